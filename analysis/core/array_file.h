@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace timbre {
+
+/// The bytes of a NumPy `.npy` file, format 1.0, little-endian.
+/// Matrices are stored as they lie in memory (`fortran_order: True`).
+[[nodiscard]] std::string to_npy(const Eigen::MatrixXd& matrix);
+[[nodiscard]] std::string to_npy(const Eigen::VectorXd& vector);
+[[nodiscard]] std::string to_npy(const Eigen::VectorXi& vector);
+/// Row-major n x 3 tables: points (float64) and faces (int32).
+[[nodiscard]] std::string to_npy(
+    const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& points);
+[[nodiscard]] std::string to_npy(
+    const Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>& faces);
+
+/// One array of an archive: `bytes` as `to_npy` makes them.
+struct NamedArray {
+  std::string name;
+  std::string bytes;
+};
+
+/// The bytes of a NumPy `.npz` file: a zip archive, stored, not deflated, without
+/// times, so that the same arrays give the same bytes.
+/// @throws Error  bad_request beyond 4 GiB, which this zip format cannot hold
+[[nodiscard]] std::string to_npz(const std::vector<NamedArray>& arrays);
+
+}  // namespace timbre

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <vector>
+
+#include "timbre/analysis/mesh/triangle_mesh.h"
+
+namespace timbre {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+enum class OperatorKind : std::uint8_t { cotan };
+enum class MassKind : std::uint8_t { lumped, consistent };
+
+struct OperatorOptions {
+  OperatorKind kind = OperatorKind::cotan;
+  /// Lumped is diagonal and what most papers use. Consistent is more accurate on
+  /// meshes of unlike triangulation; its eigenvalues come from above.
+  MassKind mass = MassKind::lumped;
+  /// Least slack of the triangle inequality, in mean edge lengths. Lengths of a mesh
+  /// with thinner triangles than this are all raised by the same small amount
+  /// (mollification); other meshes are left exactly as they are.
+  double mollification = 1e-5;
+};
+
+/// The discrete Laplace-Beltrami operator `W phi = lambda M phi` of one mesh, at the
+/// mesh's own scale. Rows of vertices in no triangle are empty in both matrices.
+struct Operator {
+  SparseMatrix stiffness;            ///< W, n x n, symmetric positive semi-definite
+  SparseMatrix mass;                 ///< M, n x n, positive on used vertices, length^2
+  Eigen::VectorXd lumped_mass;       ///< n, row sums of M; 0 for unused vertices
+  std::vector<std::int32_t> component;  ///< n, connected component of a vertex, -1 if unused
+  Eigen::VectorXd component_area;    ///< one per component, length^2
+  double area = 0.0;                 ///< total, length^2
+  double mollified_by = 0.0;         ///< length added to every edge; 0 for most meshes
+  OperatorKind kind = OperatorKind::cotan;
+  MassKind mass_kind = MassKind::lumped;
+};
+
+/// Assembles stiffness and mass.
+///
+/// Triangles with a repeated corner are left out. Positions are taken relative to
+/// the centre of the bounding box and divided by a power of two, so neither a far
+/// origin nor an extreme unit of length costs digits.
+///
+/// @throws Error  bad_input if no triangle has area, or an area overflows
+/// @see Pinkall and Polthier 1993; Sharp and Crane 2020, section 4.5 (mollification)
+[[nodiscard]] Operator compute_operator(const TriangleMesh& mesh,
+                                        const OperatorOptions& options = {});
+
+/// `cotan`, `lumped`, ...: the words of the command line and of stored parameters.
+[[nodiscard]] const char* to_word(OperatorKind kind);
+[[nodiscard]] const char* to_word(MassKind kind);
+
+}  // namespace timbre

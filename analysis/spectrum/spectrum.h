@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "timbre/analysis/core/progress.h"
+#include "timbre/analysis/operators/operator.h"
+
+namespace timbre {
+
+/// Which library factorises `W - s M`.
+enum class FactorizationBackend : std::uint8_t {
+  automatic,  ///< CHOLMOD where timbre was built with it, Eigen otherwise
+  cholmod,    ///< supernodal LL^T of SuiteSparse
+  eigen,      ///< SimplicialLDLT of Eigen; always there
+};
+
+struct SpectrumOptions {
+  int count = 100;          ///< eigenpairs wanted, from the lowest; capped at n
+  double tolerance = 1e-6;  ///< largest residual accepted, as `residuals` measures it
+  bool certify = true;      ///< count eigenvalues by inertia, so that none is missing
+  FactorizationBackend backend = FactorizationBackend::automatic;
+  Progress progress = {};  ///< may be empty
+};
+
+/// A proof by counting: exactly `count` eigenvalues of the computed matrices lie below
+/// `bound`. The count is at least the number of pairs returned; it is larger where the
+/// last pair belongs to a cluster that goes on.
+struct Certificate {
+  double bound = 0.0;      ///< 1/length^2
+  std::int64_t count = 0;  ///< eigenvalues below, by Sylvester's law of inertia
+};
+
+/// The lowest eigenpairs of `W phi = lambda M phi`. Always checked: whoever holds a
+/// Spectrum may rely on `residuals`, and on `certificate` where it is not empty.
+struct Spectrum {
+  Eigen::VectorXd values;       ///< k, ascending, 1/length^2; exact zeros are 0
+  Eigen::MatrixXd vectors;      ///< n x k, M-orthonormal, column i for values(i)
+  Eigen::VectorXd residuals;    ///< k, relative, dimensionless
+  double orthonormality = 0.0;  ///< max |Phi^T M Phi - I|
+  int zeros = 0;                ///< leading eigenvalues that are exactly 0, one per component
+  std::optional<Certificate> certificate;  ///< empty if not asked for
+};
+
+/// Computes the `options.count` lowest eigenpairs of a Laplacian.
+///
+/// Each connected component is solved alone, at unit area; the result is the merged
+/// union, and an eigenfunction lives on one component. The result does not depend on
+/// the number of threads. The sign of a column is canonical (the first entry, in vertex
+/// order, above half the largest is positive) but means nothing: use it for display,
+/// never in an algorithm. On vertices in no triangle eigenfunctions are 0.
+///
+/// @param op  as `compute_operator` makes it
+/// @throws Error  bad_request if count < 1; not_converged if a pair misses `tolerance`
+///                or the inertia count disagrees, after a retry; cancelled
+/// @see Vallet and Levy 2008, section 4 (shift-invert); Ericsson and Ruhe 1980
+[[nodiscard]] Spectrum compute_spectrum(const Operator& op, const SpectrumOptions& options = {});
+
+/// The same spectrum as of the surface scaled to unit total area: values times the
+/// area, vectors times its square root.
+/// @param area  total area of the operator the spectrum came from
+[[nodiscard]] Spectrum at_unit_area(Spectrum spectrum, double area);
+
+}  // namespace timbre

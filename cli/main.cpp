@@ -1,0 +1,75 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <new>
+#include <string>
+
+#include "timbre/analysis/core/error.h"
+#include "timbre/cli/command.h"
+#include "timbre/cli/version.h"
+
+namespace {
+
+using timbre::Error;
+using timbre::ErrorKind;
+
+int exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::bad_request:
+      return 2;
+    case ErrorKind::cancelled:
+      return 130;
+    default:
+      return 1;
+  }
+}
+
+// Not iostreams: one write, so that the line stays one line among other processes' lines.
+int complain(const std::string& line, int code) {
+  const std::string whole = "timbre: " + line + "\n";
+  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, whole.data(), whole.size());
+  return code;
+}
+
+void add_commands([[maybe_unused]] CLI::App& app, [[maybe_unused]] timbre::cli::Context& context) {
+  using namespace timbre::cli;  // NOLINT(google-build-using-namespace): the names of one room
+  // add_info(app, context); ...
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Hears the shape of things: spectra, a database of shapes, maps between them.",
+               "timbre");
+  timbre::cli::Context context;
+  app.require_subcommand(1);
+  app.set_version_flag("--version", timbre::cli::version_text());
+  app.footer(
+      "Each command explains itself and gives an example: timbre COMMAND --help\n"
+      "Start with: timbre info MESH");
+  add_commands(app, context);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
+  } catch (const CLI::ParseError& wrong) {
+    return complain(timbre::escape_control(wrong.what()) + "; see timbre --help", 2);
+  }
+  return context.exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  timbre::cli::catch_interrupts();
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    // A reader that went away (`| head`) is no failure worth a word.
+    if (error.place() == "standard output" && error.cause() == "Broken pipe") return 0;
+    return complain(error.what(), exit_code(error.kind()));
+  } catch (const std::bad_alloc&) {
+    return complain("memory: not enough; a smaller mesh, fewer eigenpairs (-k) or fewer threads "
+                    "need less", 1);
+  } catch (const std::exception& other) {
+    return complain(std::string("internal error: ") + other.what(), 1);
+  }
+}

@@ -16,7 +16,10 @@ using Eigen::Index;
 
 constexpr std::array kSampleSizes = {20, 24, 28, 32, 36, 40, 45, 50};
 constexpr std::array kVertexSizes = {50, 60, 72, 86, 100};
-constexpr std::array kDenseSizes = {100, 120, 150, 200};
+// Space counts from the start, at small sizes, where it still moves the map.
+constexpr std::array kDenseSteps = {DenseStep{100, 2.0, 0.005, 40}, DenseStep{120, 2.0, 0.005, 60},
+                                    DenseStep{150, 2.0, 0.005, 100},
+                                    DenseStep{200, 2.0, 0.005, 150}};
 constexpr int kVertexSamples = 800;
 constexpr double kDistinct = 0.06;     // mean distance of maps that are different answers
 constexpr double kCloseEnergy = 0.25;  // closer than this: compare after dense refinement
@@ -149,7 +152,8 @@ class Matcher {
   }
 
   void refine(Rival& rival) {
-    rival.dense = zoom_out_densely(a_, b_, rival.functional, kDenseSizes, options_.threads);
+    rival.dense = refine_densely(a_, b_, rival.functional, kDenseSteps, rival.candidate.orientation,
+                                 options_.threads);
   }
 
   // A close second is refined too. The better dense map takes the better energy, so that
@@ -160,8 +164,8 @@ class Matcher {
     if (rivals.size() < 2 || misoriented(rivals[1])) return;
     if (rivals[1].energy - rivals[0].energy > kCloseEnergy) return;
     refine(rivals[1]);
-    const double first = dense_score(a_, b_, *rivals[0].dense);
-    const double second = dense_score(a_, b_, *rivals[1].dense);
+    const double first = dense_score(a_, b_, *rivals[0].dense, rivals[0].candidate.orientation);
+    const double second = dense_score(a_, b_, *rivals[1].dense, rivals[1].candidate.orientation);
     const double low = std::min(rivals[0].energy, rivals[1].energy);
     if (second < first) std::swap(rivals[0], rivals[1]);
     rivals[0].energy = low;

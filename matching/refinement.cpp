@@ -2,10 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
 #include "timbre/analysis/core/threads.h"
+#include "timbre/matching/deformation.h"
 
 namespace timbre {
 namespace {
@@ -70,6 +73,28 @@ std::vector<std::int32_t> first_samples(const MatchSurface& s, Index count) {
 
 RowMatrixXf rows_of(const RowMatrixXf& X, const std::vector<std::int32_t>& rows) {
   return X(rows, Eigen::all);
+}
+
+// Positions and normals of both shapes in both poses, twelve more columns. The squared
+// metric of the spectral part is half the sum of its eigenvalues, so that sum is the
+// unit of the weights.
+void append_poses(const MatchSurface& A, const MatchSurface& B, const PointMaps& points,
+                  const DenseStep& step, Index k, int orientation, JointEmbedding& joint) {
+  const PosedSurface a = pose_as(A, B, points.ab, step.pose_size, orientation);
+  const PosedSurface b = pose_as(B, A, points.ba, step.pose_size, orientation);
+  const double metric = 0.5 * (A.values.head(k).sum() + B.values.head(k).sum());
+  const double s = std::sqrt(step.positions * metric);
+  const double g = std::sqrt(step.normals * metric);
+  const auto append = [](RowMatrixXf& rows, std::initializer_list<Points> parts) {
+    Index at = rows.cols();
+    rows.conservativeResize(Eigen::NoChange, at + 3 * static_cast<Index>(parts.size()));
+    for (const Points& part : parts) {
+      rows.middleCols(at, 3) = part.cast<float>();
+      at += 3;
+    }
+  };
+  append(joint.a, {s * a.points, g * a.normals, s * A.points, g * A.normals});
+  append(joint.b, {s * B.points, g * B.normals, s * b.points, g * b.normals});
 }
 
 }  // namespace
@@ -189,24 +214,27 @@ FunctionalMaps zoom_out_to_vertices(const MatchSurface& A, const MatchSurface& B
   return maps;
 }
 
-DenseMaps zoom_out_densely(const MatchSurface& A, const MatchSurface& B, FunctionalMaps maps,
-                           std::span<const int> sizes, int threads) {
+DenseMaps refine_densely(const MatchSurface& A, const MatchSurface& B, FunctionalMaps maps,
+                         std::span<const DenseStep> steps, int orientation, int threads) {
   DenseMaps result{std::move(maps), {}};
-  const auto update_points = [&] {
+  const auto embedding = [&] {
     const Index k = result.functional.ab.rows();
-    const JointEmbedding joint =
-        joint_embedding(A.vectors.leftCols(k), B.vectors.leftCols(k), result.functional);
-    result.points = nearest_rows_both_ways(joint.a, joint.b, threads);
+    return joint_embedding(A.vectors.leftCols(k), B.vectors.leftCols(k), result.functional);
   };
-  update_points();
-  for (const int size : sizes) {
-    const Index k = capped_by_spectrum(size, A, B);
+  {
+    const JointEmbedding joint = embedding();
+    result.points = nearest_rows_both_ways(joint.a, joint.b, threads);
+  }
+  for (const DenseStep& step : steps) {
+    const Index k = capped_by_spectrum(step.size, A, B);
     const auto columns = Eigen::seqN(0, k);
     const MatrixXd weighted_a = A.mass.asDiagonal() * A.vectors.leftCols(k);
     const MatrixXd weighted_b = B.mass.asDiagonal() * B.vectors.leftCols(k);
     result.functional.ab = product_at_b(weighted_a, B.vectors(result.points.ab, columns));
     result.functional.ba = product_at_b(weighted_b, A.vectors(result.points.ba, columns));
-    update_points();
+    JointEmbedding joint = embedding();
+    if (step.positions > 0.0) append_poses(A, B, result.points, step, k, orientation, joint);
+    result.points = nearest_rows_both_ways(joint.a, joint.b, threads);
   }
   return result;
 }

@@ -66,9 +66,22 @@ struct DenseMaps {
   PointMaps points;  ///< between rows of the surfaces
 };
 
-/// The same with all vertices on both sides.
-[[nodiscard]] DenseMaps zoom_out_densely(const MatchSurface& A, const MatchSurface& B,
-                                         FunctionalMaps maps, std::span<const int> sizes,
-                                         int threads);
+/// One step of dense refinement: its spectral size, and how much each shape posed as the
+/// other counts beside the spectral embedding.
+struct DenseStep {
+  int size = 100;
+  double positions = 2.0;  ///< 1: as much as the spectral part; 0: not at all
+  double normals = 0.005;  ///< the same; large values tear the map
+  int pose_size = 40;      ///< eigenfunctions of the smooth part of the pose
+};
+
+/// All vertices on both sides: at each step functional maps from the point maps, each shape
+/// posed as the other, and new point maps from nearness in spectrum and in space together.
+/// Space decides where the spectrum slides, on torsos and thighs.
+/// @param orientation  +1 direct, -1 mirrored
+/// @see Eisenberger et al. 2020 (Smooth Shells) for the idea of both at once
+[[nodiscard]] DenseMaps refine_densely(const MatchSurface& A, const MatchSurface& B,
+                                       FunctionalMaps maps, std::span<const DenseStep> steps,
+                                       int orientation, int threads);
 
 }  // namespace timbre

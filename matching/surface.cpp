@@ -9,7 +9,6 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"
-#include "timbre/analysis/geodesic/graph.h"
 #include "timbre/analysis/operators/operator.h"
 
 namespace timbre {
@@ -114,12 +113,11 @@ void compute_tensors(MatchSurface& s, Index k) {
 
 // Geodesic farthest points, then Euclidean ones, which cost less and fill the gaps.
 void choose_samples(MatchSurface& s, const SurfaceOptions& options) {
-  const GeodesicGraph graph = make_geodesic_graph({s.points, s.faces});
   Index first = 0;
   s.points.rowwise().squaredNorm().maxCoeff(&first);
   s.samples =
-      geodesic_farthest_points(graph, options.geodesic_samples, static_cast<std::int32_t>(first));
-  s.distances = graph_distance_rows(graph, s.samples, options.threads);
+      geodesic_farthest_points(s.graph, options.geodesic_samples, static_cast<std::int32_t>(first));
+  s.distances = graph_distance_rows(s.graph, s.samples, options.threads);
 
   VectorXd nearest = s.distances.colwise().minCoeff().transpose().cast<double>();
   const Index wanted = std::min<Index>(options.samples, s.points.rows());
@@ -167,6 +165,7 @@ MatchSurface prepare_surface(const TriangleMesh& mesh, const SurfaceOptions& opt
   s.points.rowwise() -= (s.mass.transpose() * s.points).eval();
   s.faces = part.faces;
   s.normals = vertex_normals(s.points, s.faces);
+  s.graph = make_geodesic_graph({s.points, s.faces});
   s.curvature = curvature_coefficients(s, op.stiffness);
   compute_tensors(s, std::min<Index>(options.tensor_size, s.values.size() - 1));
   choose_samples(s, options);

@@ -6,6 +6,7 @@
 
 #include "timbre/analysis/core/matrix_product.h"
 #include "timbre/analysis/core/progress.h"
+#include "timbre/analysis/geodesic/graph.h"
 #include "timbre/analysis/mesh/orientation.h"
 #include "timbre/analysis/mesh/triangle_mesh.h"
 #include "timbre/analysis/spectrum/spectrum.h"
@@ -27,6 +28,7 @@ struct MatchSurface {
   Faces faces;           ///< rows of `points`
   Points normals;        ///< n x 3, unit, area-weighted
   Eigen::VectorXd mass;  ///< n, lumped, sums to 1
+  GeodesicGraph graph;   ///< edges and unfolded diagonals
   Orientation orientation = Orientation::unknown;
 
   Eigen::VectorXd values;   ///< k eigenvalues, values(0) = 0

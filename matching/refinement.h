@@ -40,6 +40,14 @@ struct JointEmbedding {
 [[nodiscard]] PointMaps nearest_rows_both_ways(const RowMatrixXf& X, const RowMatrixXf& Y,
                                                int threads);
 
+/// The nearest row of Y among those around the present images: of a row x, the images of
+/// x and its neighbours, and their neighbours on the target. Sweeps until nothing moves,
+/// at most `sweeps` times. Finds what an exact search finds where a map is nearly right
+/// already, at a cost that is linear in the number of rows.
+[[nodiscard]] PointMap nearest_rows_nearby(const RowMatrixXf& X, const GeodesicGraph& x_graph,
+                                           const RowMatrixXf& Y, const GeodesicGraph& y_graph,
+                                           PointMap start, int sweeps, int threads);
+
 /// C with `Phi C ~ F` in the weighted least-squares sense; a little regularised.
 [[nodiscard]] Eigen::MatrixXd fit_functional_map(const Eigen::Ref<const Eigen::MatrixXd>& phi,
                                                  const Eigen::Ref<const Eigen::VectorXd>& weight,

@@ -63,4 +63,13 @@ struct SurfaceOptions {
 [[nodiscard]] MatchSurface prepare_surface(const TriangleMesh& mesh,
                                            const SurfaceOptions& options = {});
 
+/// The same with eigenpairs that are known already.
+///
+/// @param mesh      one component, every vertex in use
+/// @param spectrum  of its cotangent Laplacian with lumped mass, at the mesh's scale; signs
+///                  and rotations within near-equal eigenvalues are free
+/// @throws Error  bad_request if mesh and spectrum do not fit together
+[[nodiscard]] MatchSurface prepare_surface(const TriangleMesh& mesh, Spectrum spectrum,
+                                           const SurfaceOptions& options = {});
+
 }  // namespace timbre

@@ -33,6 +33,7 @@ std::string describe(const Switch& item) {
     case SwitchKind::mixed:
       break;
   }
+  if (item.target.empty()) return "eigenfunction " + list(item.source) + " has no counterpart";
   return "eigenfunctions " + list(item.source) + " correspond only together, to " +
          list(item.target) + " of the target";
 }

@@ -45,6 +45,6 @@ void catch_interrupts();
 [[nodiscard]] std::string utf8_or_replaced(std::string_view text);
 
 // One function per command, in commands/: adds the subcommand and its callback.
-
+void add_info(CLI::App& app, Context& context);
 
 }  // namespace timbre::cli

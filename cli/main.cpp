@@ -31,9 +31,9 @@ int complain(const std::string& line, int code) {
   return code;
 }
 
-void add_commands([[maybe_unused]] CLI::App& app, [[maybe_unused]] timbre::cli::Context& context) {
+void add_commands(CLI::App& app, timbre::cli::Context& context) {
   using namespace timbre::cli;  // NOLINT(google-build-using-namespace): the names of one room
-  // add_info(app, context); ...
+  add_info(app, context);
 }
 
 int run(int argc, char** argv) {

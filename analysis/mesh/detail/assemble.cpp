@@ -1,12 +1,11 @@
 #include "timbre/analysis/mesh/detail/assemble.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 
 #include "timbre/analysis/mesh/detail/grouping.h"
+#include "timbre/analysis/mesh/detail/triangle.h"
 #include "timbre/analysis/mesh/detail/triangulate.h"
 
 namespace timbre::detail {
@@ -44,30 +43,6 @@ Kept keep(PolygonMesh& mesh) {
   return kept;
 }
 
-double largest_coordinate(const std::vector<double>& coordinates) {
-  double largest = 0.0;
-  for (const double c : coordinates) largest = std::max(largest, std::abs(c));
-  return largest;
-}
-
-// Twice the area is at most 1e-15 of the longest edge squared. First all is divided by
-// `unit`, the largest coordinate of the mesh, and then by the longest side of the triangle's
-// box, so that neither 1e300 nor 1e-200 raises an alarm.
-bool has_no_area(const double* a, const double* b, const double* c, double unit) {
-  Eigen::Vector3d u;
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) {
-    u[k] = b[k] / unit - a[k] / unit;
-    v[k] = c[k] / unit - a[k] / unit;
-  }
-  const double size = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
-  if (size == 0.0) return true;
-  u /= size;
-  v /= size;
-  const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
-  return u.cross(v).norm() <= 1e-15 * longest;
-}
-
 bool repeats_a_corner(Polygon polygon, std::vector<std::int32_t>& scratch) {
   if (polygon.size() == 3) {
     return polygon[0] == polygon[1] || polygon[1] == polygon[2] || polygon[2] == polygon[0];
@@ -79,7 +54,7 @@ bool repeats_a_corner(Polygon polygon, std::vector<std::int32_t>& scratch) {
 
 void find_degenerate_faces(const Kept& kept, PolygonMesh& mesh) {
   const double* const xyz = mesh.coordinates.data();
-  const double unit = largest_coordinate(mesh.coordinates);
+  const double unit = unit_of(mesh.coordinates);
   std::vector<std::int32_t> scratch;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const Polygon polygon = kept[i];

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <span>
+#include <type_traits>
 #include <utility>
 
 #include "timbre/analysis/core/error.h"
@@ -186,7 +186,10 @@ class Examination {
       fans_.join(edge, same_way ? other : next(other));
       fans_.join(next(edge), same_way ? next(other) : other);
       if (triangles_at_[at(other)] != 2) continue;
-      if (same_way) ++found_.flipped_edges;
+      if (same_way) {
+        const auto [low, high] = ends(edge);
+        note(found_.flipped_edges, found_.first_flipped_edges, {low, high});
+      }
       if (!sides_.join(edge / 3, other / 3, same_way)) found_.orientable = false;
     }
   }
@@ -271,7 +274,8 @@ class Examination {
   }
 
   template <typename Place>
-  static void note(std::int64_t& count, std::vector<Place>& first, Place place) {
+  static void note(std::int64_t& count, std::vector<Place>& first,
+                   const std::type_identity_t<Place>& place) {
     if (count++ < static_cast<std::int64_t>(kListed)) first.push_back(place);
   }
 

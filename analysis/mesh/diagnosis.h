@@ -35,6 +35,7 @@ struct Diagnosis {
   std::int64_t duplicate_faces = 0;   ///< the corners of an earlier one, in any order
 
   std::vector<std::array<std::int32_t, 2>> first_nonmanifold_edges;  ///< by vertex numbers
+  std::vector<std::array<std::int32_t, 2>> first_flipped_edges;
   std::vector<std::int32_t> first_nonmanifold_vertices;
   std::vector<std::int32_t> first_degenerate_faces;
   std::vector<std::int32_t> first_duplicate_faces;

@@ -95,15 +95,15 @@ std::vector<std::string> findings(const Diagnosis& found) {
   };
   add(found.components > 1 ? found.components : 0, "components", "",
       "one eigenvalue 0 for each, and every eigenfunction lives on one of them");
-  add(found.boundary_loops, "boundary loops", "",
-      "the surface may move freely there (Neumann) unless --boundary says otherwise");
+  add(found.boundary_loops, "boundary loops", "", "the natural (Neumann) condition holds there");
   add(found.nonmanifold_edges, "edges of three or more triangles",
       list(found.first_nonmanifold_edges, found.nonmanifold_edges),
       "heat flows through all sheets; eigenvalues stay valid");
   add(found.nonmanifold_vertices, "non-manifold vertices",
       list(found.first_nonmanifold_vertices, found.nonmanifold_vertices),
       "the sheets are joined at a point only, which low frequencies hardly feel");
-  add(found.flipped_edges, "edges whose two triangles are turned unlike", "",
+  add(found.flipped_edges, "edges whose two triangles are turned unlike",
+      list(found.first_flipped_edges, found.flipped_edges),
       "no effect on the spectrum; normals and volume suffer");
   add(found.degenerate_faces, "triangles without area",
       list(found.first_degenerate_faces, found.degenerate_faces),
@@ -117,6 +117,11 @@ std::vector<std::string> findings(const Diagnosis& found) {
   return lines;
 }
 
+// The diagnosis says the same, with its consequence.
+bool is_in_findings(const ReadWarning& warning) {
+  return warning.code == "duplicate-face" || warning.code == "unused-vertex";
+}
+
 std::string to_text(const std::string& path, const MeshFile& file, const Diagnosis& found) {
   std::string text = escape_control(path) + ": " + file.format + ", " +
                      counted(found.vertices, "vertex", "vertices") + ", " +
@@ -126,6 +131,7 @@ std::string to_text(const std::string& path, const MeshFile& file, const Diagnos
   if (found.volume) text += "volume: " + timbre::to_text(*found.volume) + "\n";
   for (const std::string& line : findings(found)) text += "- " + line + "\n";
   for (const ReadWarning& warning : file.warnings) {
+    if (is_in_findings(warning)) continue;
     text += "- file: " + escape_control(warning.message) + "\n";
   }
   return text;

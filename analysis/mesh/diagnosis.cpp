@@ -126,7 +126,7 @@ class Examination {
       std::sort(sorted[f].begin(), sorted[f].end());
       const bool repeats = sorted[f][0] == sorted[f][1] || sorted[f][1] == sorted[f][2];
       if (repeats || detail::has_no_area(position(corner[0]), position(corner[1]),
-                                         position(corner[2]), unit_)) {
+                                         position(corner[2]), 1.0 / unit_)) {
         note(found_.degenerate_faces, found_.first_degenerate_faces, static_cast<Index>(f));
       }
     }
@@ -239,7 +239,7 @@ class Examination {
     double area = 0.0;
     for (std::size_t c = 0; c < corner_count(); c += 3) {
       area += detail::triangle_area(position(corners_[c]), position(corners_[c + 1]),
-                                    position(corners_[c + 2]), unit_);
+                                    position(corners_[c + 2]), 1.0 / unit_);
     }
     found_.area = area * unit_ * unit_;
     const bool closed = found_.boundary_edges == 0 && found_.nonmanifold_edges == 0;

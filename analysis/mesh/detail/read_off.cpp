@@ -69,11 +69,12 @@ Counts read_counts(Cursor& cursor, std::string_view glued) {
   } else if (const auto value = parse_integer(glued)) {
     vertices = *value;
   } else {
-    throw cursor.error(quoted(glued) + " is not an integer of 64 bits");
+    throw cursor.error(in_quotes(glued) + " is not an integer of 64 bits");
   }
   const std::int64_t faces = cursor.integer();
   for (std::string_view edges = cursor.word(); !edges.empty(); edges = cursor.word()) {
-    if (!parse_integer(edges)) throw cursor.error(quoted(edges) + " is not an integer of 64 bits");
+    if (!parse_integer(edges))
+      throw cursor.error(in_quotes(edges) + " is not an integer of 64 bits");
   }
   constexpr std::uint64_t kVertexBytes = 6;  // "0 0 0\n"
   constexpr std::uint64_t kFaceBytes = 2;    // "0\n"

@@ -94,7 +94,7 @@ class StlTextReader {
 
   void end_line() {
     if (const auto word = cursor_.word(); !word.empty()) {
-      throw cursor_.error(quoted(word) + " is one value too many");
+      throw cursor_.error(in_quotes(word) + " is one value too many");
     }
   }
 

@@ -24,20 +24,19 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 // Union-find that also knows whether a member is turned against its set's root.
 class Sets {
  public:
-  explicit Sets(std::size_t count) : parent_(count), turned_(count, 0) {
+  explicit Sets(std::size_t count) : parent_(count), turned_(count, false) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
   Index root(Index i) {
     Index top = i;
-    char turned = 0;
-    while (parent_[at(top)] != top) {
-      turned ^= turned_[at(top)];
-      top = parent_[at(top)];
-    }
+    bool turned = false;
+    for (; parent_[at(top)] != top; top = parent_[at(top)]) turned = turned != turned_[at(top)];
     while (parent_[at(i)] != top && i != top) {  // shortens the path
       const Index next = std::exchange(parent_[at(i)], top);
-      turned ^= std::exchange(turned_[at(i)], turned);
+      const bool step = turned_[at(i)];
+      turned_[at(i)] = turned;
+      turned = turned != step;
       i = next;
     }
     return top;
@@ -45,7 +44,7 @@ class Sets {
 
   bool is_turned(Index i) {
     root(i);  // from here on the parent is the root
-    return turned_[at(i)] != 0;
+    return turned_[at(i)];
   }
 
   /// False if both were in one set already, turned otherwise than now said.
@@ -56,13 +55,13 @@ class Sets {
     if (a == b) return !relative;
     if (a > b) std::swap(a, b);
     parent_[at(b)] = a;
-    turned_[at(b)] = relative ? 1 : 0;
+    turned_[at(b)] = relative;
     return true;
   }
 
  private:
   std::vector<Index> parent_;
-  std::vector<char> turned_;
+  std::vector<bool> turned_;
 };
 
 // The corners of the triangles that have three different ones.

@@ -61,5 +61,6 @@ void catch_interrupts();
 void add_spectrum(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);
+void add_info(CLI::App& app, Context& context);
 
 }  // namespace timbre::cli

@@ -37,6 +37,7 @@ int complain(const std::string& line, int code) {
 
 void add_commands(CLI::App& app, timbre::cli::Context& context) {
   using namespace timbre::cli;  // NOLINT(google-build-using-namespace): the names of one room
+  add_info(app, context);
   add_spectrum(app, context);
   add_match(app, context);
   add_symmetry(app, context);

@@ -52,8 +52,7 @@ struct Channel {
 inline constexpr char kDefaultChannel[] = "dna_weyl";
 
 /// Mean of |a_i - b_i| over the leading entries both have.
-[[nodiscard]] double mean_absolute_difference(std::span<const double> a,
-                                              std::span<const double> b);
+[[nodiscard]] double mean_absolute_difference(std::span<const double> a, std::span<const double> b);
 /// Square root of the sum of (a_i - b_i)^2 over the leading entries both have.
 [[nodiscard]] double euclidean_distance(std::span<const double> a, std::span<const double> b);
 

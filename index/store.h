@@ -30,9 +30,9 @@ struct StoreParameters {
 
 /// A stored shape without its data.
 struct ShapeInfo {
-  std::int64_t id = 0;   ///< ascending in the order of adding; kept by a replacement
-  std::string name;      ///< UTF-8, 1 to 255 bytes, no control characters; unique
-  std::string label;     ///< its class; empty: none
+  std::int64_t id = 0;     ///< ascending in the order of adding; kept by a replacement
+  std::string name;        ///< UTF-8, 1 to 255 bytes, no control characters; unique
+  std::string label;       ///< its class; empty: none
   Sha256Digest content{};  ///< of vertices and faces
   std::int64_t vertices = 0;
   std::int64_t faces = 0;
@@ -52,14 +52,14 @@ struct ShapeRecord {
   std::string label;
   TriangleMesh mesh;
   double area = 0.0;
-  Eigen::VectorXd eigenvalues;  ///< at the mesh's own scale, 1/length^2
+  Eigen::VectorXd eigenvalues;  ///< at unit total area, from lambda_0 on
   std::vector<Descriptor> descriptors;
 };
 
 /// SHA-256 over the exact bits of vertices and faces, and their numbers.
 [[nodiscard]] Sha256Digest content_of(const TriangleMesh& mesh);
 
-/// @throws Error  bad_input unless `text` is UTF-8 of at most 255 bytes without control
+/// @throws Error  bad_input unless `text` is well-formed UTF-8 of at most 255 bytes without control
 ///                characters; `what` is its place in the message
 void require_storable_text(const std::string& text, const char* what);
 
@@ -72,7 +72,7 @@ enum class AddOutcome : std::uint8_t {
 enum class StoreAccess : std::uint8_t { read, write };
 
 struct Damage {
-  std::string name;   ///< of the shape; empty where it is the file as a whole
+  std::string name;  ///< of the shape; empty where it is the file as a whole
   std::string cause;
 };
 
@@ -115,8 +115,8 @@ class Store {
   [[nodiscard]] std::vector<ShapeInfo> list() const;
   [[nodiscard]] std::optional<ShapeInfo> find(const std::string& name) const;
 
-  /// @throws Error  bad_input if the name holds other content and `replace` is false, or
-  ///                name or label cannot be stored; io
+  /// @throws Error  bad_request if the name holds other content and `replace` is false;
+  ///                bad_input if name or label cannot be stored; io
   AddOutcome add(const ShapeRecord& record, bool replace = false);
   /// @throws Error  bad_request if there is no such shape
   void remove(const std::string& name);
@@ -124,7 +124,8 @@ class Store {
   /// The mesh as it was added, bit for bit.
   /// @throws Error  here and below: bad_request for an unknown name; bad_input for damage
   [[nodiscard]] TriangleMesh mesh(const std::string& name) const;
-  /// The lowest eigenvalues at the mesh's own scale, from lambda_0 on.
+  /// The lowest eigenvalues at unit total area, from lambda_0 on; divided by the shape's
+  /// area they are those of its own scale.
   [[nodiscard]] Eigen::VectorXd eigenvalues(const std::string& name) const;
   /// @throws Error  also bad_request if the channel was stored with another version or
   ///                other parameters than `channel` has

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/matrix_product.h"
 
 namespace timbre {
 namespace {
@@ -41,7 +42,7 @@ Eigen::MatrixXd compute_heat_kernel_signature(const Spectrum& spectrum,
     const Eigen::RowVectorXd trace = decay.colwise().sum();
     decay.array().rowwise() /= trace.array();
   }
-  return spectrum.vectors.rightCols(used).cwiseAbs2() * decay;
+  return product_a_b(spectrum.vectors.rightCols(used).cwiseAbs2(), decay);
 }
 
 }  // namespace timbre

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/matrix_product.h"
 
 namespace timbre {
 
@@ -31,7 +32,7 @@ Eigen::MatrixXd compute_wave_kernel_signature(const Spectrum& spectrum,
     weights.col(e) = (-0.5 * ((levels - bands.energies(e)) / bands.sigma).square()).exp();
     weights.col(e) /= weights.col(e).sum();
   }
-  return spectrum.vectors.rightCols(used).cwiseAbs2() * weights;
+  return product_a_b(spectrum.vectors.rightCols(used).cwiseAbs2(), weights);
 }
 
 }  // namespace timbre

@@ -30,9 +30,7 @@ static_assert(std::endian::native == std::endian::little, "blobs are stored as t
 
 constexpr int kCompressionLevel = 3;
 
-std::string real_bits(double value) {
-  return std::to_string(std::bit_cast<std::uint64_t>(value));
-}
+std::string real_bits(double value) { return std::to_string(std::bit_cast<std::uint64_t>(value)); }
 
 }  // namespace
 
@@ -43,8 +41,8 @@ std::string pack_mesh(const TriangleMesh& mesh) {
   std::memcpy(plain.data(), mesh.vertices.data(), points);
   std::memcpy(plain.data() + points, mesh.faces.data(), corners);
   std::string packed(ZSTD_compressBound(plain.size()), '\0');
-  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(),
-                                         kCompressionLevel);
+  const std::size_t size =
+      ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kCompressionLevel);
   if (ZSTD_isError(size) != 0U) {
     throw Error(ErrorKind::io, "", "mesh", ZSTD_getErrorName(size));
   }

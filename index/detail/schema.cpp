@@ -81,8 +81,8 @@ void require_ours(const Database& database) {
   const std::string format = database.ask("PRAGMA user_version");
   if (format != std::to_string(kFormat)) {
     throw Error(ErrorKind::bad_input, database.path(), "",
-                "has format " + format + ", this timbre reads format " +
-                    std::to_string(kFormat) + "; use a newer timbre");
+                "has format " + format + ", this timbre reads format " + std::to_string(kFormat) +
+                    "; use a newer timbre");
   }
   if (schema_text(database) != our_schema()) {
     throw Error(ErrorKind::bad_input, database.path(), "",

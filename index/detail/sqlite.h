@@ -56,7 +56,10 @@ class Statement {
   /// True: a row is there to read.
   bool step();
   /// For statements that return no rows.
-  void run() { while (step()) {} }
+  void run() {
+    while (step()) {
+    }
+  }
 
   [[nodiscard]] std::int64_t integer(int column) const;
   [[nodiscard]] double real(int column) const;

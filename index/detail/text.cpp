@@ -25,9 +25,8 @@ constexpr std::array<Lead, 4> kLeads = {{{0x80, 0x00, 1, 0x0},
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
     const auto first = static_cast<unsigned char>(text[0]);
-    const auto* const lead = std::find_if(kLeads.begin(), kLeads.end(), [&](const Lead& l) {
-      return (first & l.mask) == l.bits;
-    });
+    const auto* const lead = std::find_if(
+        kLeads.begin(), kLeads.end(), [&](const Lead& l) { return (first & l.mask) == l.bits; });
     if (lead == kLeads.end() || text.size() < lead->length) return false;
     std::uint32_t point = first & static_cast<unsigned char>(~lead->mask);
     for (std::size_t i = 1; i < lead->length; ++i) {

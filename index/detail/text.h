@@ -5,6 +5,9 @@
 
 namespace timbre::detail {
 
+/// How names stand in messages.
+[[nodiscard]] inline std::string in_quotes(const std::string& name) { return "'" + name + "'"; }
+
 /// True for well-formed UTF-8: shortest forms, no surrogates, at most U+10FFFF.
 [[nodiscard]] bool is_utf8(std::string_view text);
 

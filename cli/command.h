@@ -12,12 +12,12 @@ namespace timbre::cli {
 
 /// What every command shares: how to answer, how to show progress, when to stop.
 struct Context {
-  bool json = false;     ///< one JSON document on stdout instead of text
-  bool quiet = false;    ///< no progress, no notes
-  bool force = false;    ///< results may replace existing files
-  int threads = 0;       ///< 0: all cores
-  std::string output;    ///< -o; empty: not given, "-": stdout
-  int exit_code = 0;     ///< set by commands that finish in doubt or in part
+  bool json = false;   ///< one JSON document on stdout instead of text
+  bool quiet = false;  ///< no progress, no notes
+  bool force = false;  ///< results may replace existing files
+  int threads = 0;     ///< 0: all cores
+  std::string output;  ///< -o; empty: not given, "-": stdout
+  int exit_code = 0;   ///< set by commands that finish in doubt or in part
 
   /// Prints the command's one answer: `document` with --json, else `text`.
   void answer(nlohmann::json document, std::string_view text) const;
@@ -25,6 +25,8 @@ struct Context {
   void write_result(const std::string& path, std::string_view bytes) const;
   /// A line for a person on stderr, unless --quiet.
   void note(const std::string& line) const;
+  /// A failure that does not end the command, on stderr even with --quiet.
+  void complain(const std::string& line) const;
   /// A line that belongs to the result: stdout, or stderr when stdout holds JSON.
   void say(const std::string& line) const;
   /// Progress with ETA on a terminal; stops the computation after Ctrl-C.
@@ -45,6 +47,10 @@ void catch_interrupts();
 [[nodiscard]] std::string utf8_or_replaced(std::string_view text);
 
 // One function per command, in commands/: adds the subcommand and its callback.
-
+void add_db(CLI::App& timbre, Context& context);
+void add_embed(CLI::App& timbre, Context& context);
+void add_eval(CLI::App& timbre, Context& context);
+void add_query(CLI::App& timbre, Context& context);
+void add_signature(CLI::App& timbre, Context& context);
 
 }  // namespace timbre::cli

@@ -24,6 +24,7 @@ struct ReadOptions {
 struct MeshFile {
   TriangleMesh mesh;
   std::vector<ReadWarning> warnings;  ///< sorted by code
+  std::string format;                 ///< what the content was: off, obj, ply or stl
 };
 
 /// Reads OFF, OBJ, PLY or STL, told apart by content first and by ending second,

@@ -2,6 +2,7 @@
 
 #include "timbre/analysis/core/array_file.h"
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/cli/options.h"
 
 namespace timbre::cli {
 namespace {
@@ -26,8 +27,9 @@ std::string to_rows_text(const Eigen::MatrixXd& values) {
 }
 
 std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix>& matrices) {
-  if (path.ends_with(".npy")) return npy_of(matrices.front().values);
-  if (!path.ends_with(".npz")) return to_rows_text(matrices.front().values);
+  const std::string format = array_format(path);
+  if (format == "npy") return npy_of(matrices.front().values);
+  if (format == "txt") return to_rows_text(matrices.front().values);
   std::vector<NamedArray> arrays;
   for (const NamedMatrix& matrix : matrices) {
     arrays.push_back({matrix.name, npy_of(matrix.values)});

@@ -12,7 +12,8 @@ struct NamedMatrix {
 };
 
 /// The bytes of a result file by the ending of its path: `.npy` holds the first matrix,
-/// `.npz` all, anything else is text, a row of the first matrix per line.
+/// `.npz` all, `.txt` and `-` a row of the first matrix per line.
+/// @throws Error  bad_request for another ending
 [[nodiscard]] std::string to_file_bytes(const std::string& path,
                                         const std::vector<NamedMatrix>& matrices);
 

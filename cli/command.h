@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/progress.h"
 #include "timbre/analysis/mesh/read_mesh.h"
 
@@ -39,6 +41,17 @@ void add_common_options(CLI::App& command, Context& context, bool output);
 /// Reads a mesh and notes its warnings. `-` is standard input.
 [[nodiscard]] MeshFile load_mesh(const Context& context, const std::string& path);
 
+/// Runs `work`; an error that names no file is told again with this one's name.
+template <typename Work>
+auto for_file(const std::string& path, Work&& work) {
+  try {
+    return std::forward<Work>(work)();
+  } catch (const Error& error) {
+    if (!error.file().empty() || error.kind() == ErrorKind::cancelled) throw;
+    throw error.in_file(path);
+  }
+}
+
 /// Ctrl-C sets a flag, which `Context::progress` hands to running computations.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
@@ -50,7 +63,10 @@ void catch_interrupts();
 void add_db(CLI::App& timbre, Context& context);
 void add_embed(CLI::App& timbre, Context& context);
 void add_eval(CLI::App& timbre, Context& context);
+void add_match(CLI::App& timbre, Context& context);
 void add_query(CLI::App& timbre, Context& context);
 void add_signature(CLI::App& timbre, Context& context);
+void add_spectrum(CLI::App& timbre, Context& context);
+void add_symmetry(CLI::App& timbre, Context& context);
 
 }  // namespace timbre::cli

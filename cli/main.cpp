@@ -36,8 +36,11 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   add_db(app, context);
   add_embed(app, context);
   add_eval(app, context);
+  add_match(app, context);
   add_query(app, context);
   add_signature(app, context);
+  add_spectrum(app, context);
+  add_symmetry(app, context);
 }
 
 int run(int argc, char** argv) {

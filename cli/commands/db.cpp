@@ -13,22 +13,22 @@ namespace {
 void add_db_create(CLI::App& db, Context& context) {
   struct Arguments {
     std::string database;
-    StoreParameters parameters;
+    OperatorOptions op;
+    int count = StoreParameters().count;
   };
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *db.add_subcommand("create", "A new, empty database");
   command.add_option("DB", args->database, "file to make")->required();
-  add_operator_option(command, args->parameters.operator_kind);
-  add_mass_option(command, args->parameters.mass);
-  command.add_option("-k,--count", args->parameters.count, "eigenvalues kept of each shape")
+  add_operator_options(command, args->op);
+  command.add_option("-k,--count", args->count, "eigenvalues kept of each shape")
       ->capture_default_str()
       ->check(CLI::Range(2, 100000));
   add_common_options(command, context, false);
   command.footer("Example:\n  timbre db create shapes.timbre --mass consistent");
   command.callback([args, &context] {
-    const Store store = Store::create(args->database, args->parameters);
+    const Store store = Store::create(args->database, {args->op.kind, args->op.mass, args->count});
     context.answer({{"database", utf8_or_replaced(args->database)},
-                    {"parameters", to_parameters(args->parameters)}},
+                    {"parameters", to_parameters(store.parameters())}},
                    "created " + escape_control(args->database) + "\n");
   });
 }

@@ -1,6 +1,5 @@
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,15 +19,16 @@ struct Arguments {
   std::string labels;
   int label_column = 2;
   bool replace = false;
-  std::optional<OperatorKind> operator_kind;
-  std::optional<MassKind> mass;
-  std::optional<int> count;
+  OperatorOptions op;
+  int count = StoreParameters().count;
+  // Given on the command line: only these must agree with a database that is there.
+  bool operator_given = false, mass_given = false, count_given = false;
 };
 
 StoreParameters wanted_parameters(const Arguments& args, StoreParameters parameters) {
-  if (args.operator_kind) parameters.operator_kind = *args.operator_kind;
-  if (args.mass) parameters.mass = *args.mass;
-  if (args.count) parameters.count = *args.count;
+  if (args.operator_given) parameters.operator_kind = args.op.kind;
+  if (args.mass_given) parameters.mass = args.op.mass;
+  if (args.count_given) parameters.count = args.count;
   return parameters;
 }
 
@@ -125,16 +125,21 @@ void add_db_add(CLI::App& db, Context& context) {
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
   command.add_flag("--replace", args->replace, "put other content in place of what is there");
-  add_operator_option(command, args->operator_kind);
-  add_mass_option(command, args->mass);
-  command.add_option("-k,--count", args->count, "eigenvalues kept of each shape (default 200)")
+  add_operator_options(command, args->op);
+  command.add_option("-k,--count", args->count, "eigenvalues kept of each shape")
+      ->capture_default_str()
       ->check(CLI::Range(2, 100000));
   add_common_options(command, context, false);
   command.footer(
       "A line 'added NAME' means that NAME is on disk, whatever happens next. Adding again\n"
       "goes on where an interrupted run stopped.\n"
       "Example:\n  timbre db add shapes.timbre scans/*.ply --labels classes.txt");
-  command.callback([args, &context] { run(*args, context); });
+  command.callback([args, &command, &context] {
+    args->operator_given = command.count("--operator") > 0;
+    args->mass_given = command.count("--mass") > 0;
+    args->count_given = command.count("--count") > 0;
+    run(*args, context);
+  });
 }
 
 }  // namespace timbre::cli

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,23 +18,13 @@ namespace timbre::cli {
 namespace {
 
 enum class SignatureKind : std::uint8_t { dna, dna_log, hks, wks, gps };
-const std::vector<std::pair<std::string, SignatureKind>> kSignatureKinds = {
-    {"dna", SignatureKind::dna},
-    {"dna_log", SignatureKind::dna_log},
-    {"hks", SignatureKind::hks},
-    {"wks", SignatureKind::wks},
-    {"gps", SignatureKind::gps}};
-const std::vector<std::pair<std::string, EmbeddingKind>> kEmbeddingKinds = {
-    {"gps", EmbeddingKind::gps},
-    {"diffusion", EmbeddingKind::diffusion},
-    {"biharmonic", EmbeddingKind::biharmonic}};
 
 struct Arguments {
   std::string mesh;
   SignatureKind signature = SignatureKind::hks;
   EmbeddingOptions embedding;
   int count = 100;
-  OperatorOptions operator_options;
+  OperatorOptions op;
 };
 
 struct Solved {
@@ -43,11 +34,14 @@ struct Solved {
 
 Solved solve(const Arguments& args, const Context& context) {
   Solved solved;
-  solved.op = compute_operator(load_mesh(context, args.mesh).mesh, args.operator_options);
-  const int zeros = static_cast<int>(solved.op.component_area.size());
-  solved.spectrum = at_unit_area(
-      compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()}),
-      solved.op.area);
+  const MeshFile file = load_mesh(context, args.mesh);
+  for_file(args.mesh, [&] {
+    solved.op = compute_operator(file.mesh, args.op);
+    const int zeros = static_cast<int>(solved.op.component_area.size());
+    solved.spectrum = at_unit_area(
+        compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()}),
+        solved.op.area);
+  });
   return solved;
 }
 
@@ -105,8 +99,7 @@ void add_shared_options(CLI::App& command, Arguments& args, Context& context) {
   command.add_option("-k,--count", args.count, "eigenvalues used, zeros not counted")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
-  add_operator_option(command, args.operator_options.kind);
-  add_mass_option(command, args.operator_options.mass);
+  add_operator_options(command, args.op);
   add_common_options(command, context, true);
 }
 
@@ -116,8 +109,14 @@ void add_signature(CLI::App& timbre, Context& context) {
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *timbre.add_subcommand(
       "signature", "Descriptors of a mesh (dna, dna_log, gps) or of its vertices (hks, wks)");
-  add_word_option<SignatureKind>(command, "--kind", args->signature, kSignatureKinds,
-                                 "which one (default hks)");
+  command.add_option("--kind", args->signature, "dna, dna_log, hks, wks or gps")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SignatureKind>{{"dna", SignatureKind::dna},
+                                               {"dna_log", SignatureKind::dna_log},
+                                               {"hks", SignatureKind::hks},
+                                               {"wks", SignatureKind::wks},
+                                               {"gps", SignatureKind::gps}}))
+      ->default_str("hks");
   add_shared_options(command, *args, context);
   command.footer(
       "-o F.npy, F.npz (with times or energies) or F.txt; all at unit total area.\n"
@@ -130,8 +129,12 @@ void add_embed(CLI::App& timbre, Context& context) {
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *timbre.add_subcommand(
       "embed", "Spectral coordinates of the vertices: gps, diffusion, biharmonic");
-  add_word_option<EmbeddingKind>(command, "--kind", args->embedding.kind, kEmbeddingKinds,
-                                 "which one (default gps)");
+  command.add_option("--kind", args->embedding.kind, "gps, diffusion or biharmonic")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, EmbeddingKind>{{"gps", EmbeddingKind::gps},
+                                               {"diffusion", EmbeddingKind::diffusion},
+                                               {"biharmonic", EmbeddingKind::biharmonic}}))
+      ->default_str("gps");
   command.add_option("--time", args->embedding.time, "diffusion only, in units of total area")
       ->capture_default_str()
       ->check(CLI::Range(1e-300, 1e300));

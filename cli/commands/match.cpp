@@ -1,5 +1,7 @@
 #include "timbre/matching/match.h"
 
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <memory>

@@ -20,7 +20,7 @@ struct QueryOptions {
   /// Below this many shapes every one is compared: a scan of 100,000 vectors takes
   /// milliseconds. From here on candidates come from a `NearestIndex`.
   std::int64_t exact_below = 100000;
-  std::function<void(const std::string&)> note;  ///< told what the index cache did; may be empty
+  std::function<void(const std::string&)> note = {};  ///< told what the index cache did
   Progress progress = {};                        ///< of solving the query's mesh
 };
 

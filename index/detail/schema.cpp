@@ -139,7 +139,7 @@ Database open_checked(const std::string& path, DatabaseMode mode) {
 // cannot be made and no log is left, the file is whole and can be read as it stands.
 Database open_for_reading(const std::string& path) {
   try {
-    return open_checked(path, DatabaseMode::read_only);
+    return open_checked(path, DatabaseMode::reading);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::io || ::access(folder_of(path).c_str(), W_OK) == 0) throw;
     struct stat log {};

@@ -31,17 +31,18 @@ std::string to_uri(const std::string& path) {
 
 int open_flags(DatabaseMode mode) {
   switch (mode) {
-    case DatabaseMode::read_only:
-      return SQLITE_OPEN_READONLY;
     case DatabaseMode::immutable:
       return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
     case DatabaseMode::memory:
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY;
     case DatabaseMode::create:
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    case DatabaseMode::reading:
     case DatabaseMode::read_write:
       break;
   }
+  // Also for reading: SQLite falls back by itself where the file may not be written, and
+  // a connection opened read-only would leave its log behind.
   return SQLITE_OPEN_READWRITE;
 }
 
@@ -88,6 +89,7 @@ Database::Database(const std::string& path, DatabaseMode mode) : path_(path) {
   sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   run("PRAGMA cell_size_check = ON");
   run("PRAGMA synchronous = FULL");
+  if (mode == DatabaseMode::reading) run("PRAGMA query_only = ON");
 }
 
 void Database::fail() const { throw error_of(handle_.get(), path_); }

@@ -13,7 +13,7 @@ struct sqlite3_stmt;
 namespace timbre::detail {
 
 enum class DatabaseMode : std::uint8_t {
-  read_only,
+  reading,  ///< never changes content; may tidy up the log, as any last user does
   read_write,
   create,
   memory,     ///< of its own, gone with the connection

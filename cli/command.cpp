@@ -111,7 +111,11 @@ void Context::write_result(const std::string& path, std::string_view bytes) cons
 }
 
 void Context::note(const std::string& line) const {
-  if (!quiet) write_all(STDERR_FILENO, "timbre: " + escape_control(line) + "\n", "standard error");
+  if (!quiet) complain(line);
+}
+
+void Context::complain(const std::string& line) const {
+  write_all(STDERR_FILENO, "timbre: " + escape_control(line) + "\n", "standard error");
 }
 
 void Context::say(const std::string& line) const {

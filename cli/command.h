@@ -27,6 +27,8 @@ struct Context {
   void write_result(const std::string& path, std::string_view bytes) const;
   /// A line for a person on stderr, unless --quiet.
   void note(const std::string& line) const;
+  /// A failure that does not end the command, on stderr even with --quiet.
+  void complain(const std::string& line) const;
   /// A line that belongs to the result: stdout, or stderr when stdout holds JSON.
   void say(const std::string& line) const;
   /// Progress with ETA on a terminal; stops the computation after Ctrl-C.
@@ -58,8 +60,13 @@ void catch_interrupts();
 [[nodiscard]] std::string utf8_or_replaced(std::string_view text);
 
 // One function per command, in commands/: adds the subcommand and its callback.
-void add_spectrum(CLI::App& timbre, Context& context);
+void add_db(CLI::App& timbre, Context& context);
+void add_embed(CLI::App& timbre, Context& context);
+void add_eval(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
+void add_query(CLI::App& timbre, Context& context);
+void add_signature(CLI::App& timbre, Context& context);
+void add_spectrum(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);
 void add_info(CLI::App& app, Context& context);
 

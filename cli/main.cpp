@@ -39,8 +39,13 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   using namespace timbre::cli;  // NOLINT(google-build-using-namespace): the names of one room
   add_info(app, context);
   add_spectrum(app, context);
+  add_signature(app, context);
+  add_embed(app, context);
+  add_db(app, context);
+  add_query(app, context);
   add_match(app, context);
   add_symmetry(app, context);
+  add_eval(app, context);
 }
 
 // Edits (insert, delete, replace, one each) from one word to another.

@@ -1,0 +1,40 @@
+#include "timbre/cli/array_output.h"
+
+#include "timbre/analysis/core/array_file.h"
+#include "timbre/analysis/core/number_text.h"
+#include "timbre/cli/options.h"
+
+namespace timbre::cli {
+namespace {
+
+// One column is a vector to NumPy's users.
+std::string npy_of(const Eigen::MatrixXd& values) {
+  return values.cols() == 1 ? to_npy(Eigen::VectorXd(values.col(0))) : to_npy(values);
+}
+
+}  // namespace
+
+std::string to_rows_text(const Eigen::MatrixXd& values) {
+  std::string text;
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    for (Eigen::Index j = 0; j < values.cols(); ++j) {
+      if (j > 0) text += ' ';
+      text += to_text(values(i, j));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix>& matrices) {
+  const std::string format = array_format(path);
+  if (format == "npy") return npy_of(matrices.front().values);
+  if (format == "txt") return to_rows_text(matrices.front().values);
+  std::vector<NamedArray> arrays;
+  for (const NamedMatrix& matrix : matrices) {
+    arrays.push_back({matrix.name, npy_of(matrix.values)});
+  }
+  return to_npz(arrays);
+}
+
+}  // namespace timbre::cli

@@ -1,0 +1,56 @@
+#include <memory>
+#include <string>
+
+#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/mesh/write_mesh.h"
+#include "timbre/cli/array_output.h"
+#include "timbre/cli/commands/db.h"
+#include "timbre/index/store.h"
+
+namespace timbre::cli {
+namespace {
+
+MeshFormat format_of(const std::string& path) {
+  if (path.ends_with(".off")) return MeshFormat::off;
+  if (path.ends_with(".obj")) return MeshFormat::obj;
+  if (path == "-" || path.ends_with(".ply")) return MeshFormat::ply;
+  throw Error(ErrorKind::bad_request, path, "output", "ends neither in .off, .obj nor .ply");
+}
+
+struct Arguments {
+  std::string database, name;
+  bool spectrum = false;
+};
+
+void run(const Arguments& args, const Context& context) {
+  const Store store = Store::open(args.database);
+  const std::string output = context.output.empty() ? "-" : context.output;
+  if (args.spectrum) {
+    const auto shape = store.find(args.name);
+    const Eigen::VectorXd values = store.eigenvalues(args.name) / shape.value_or(ShapeInfo()).area;
+    context.write_result(output, to_file_bytes(output, {{"eigenvalues", values}}));
+  } else {
+    context.write_result(output, to_mesh_bytes(store.mesh(args.name), format_of(output)));
+  }
+  if (context.json && output != "-") {
+    context.answer({{"name", args.name}, {"output", utf8_or_replaced(output)}}, "");
+  }
+}
+
+}  // namespace
+
+void add_db_export(CLI::App& db, Context& context) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& command = *db.add_subcommand("export", "Writes a stored mesh or its eigenvalues");
+  command.add_option("DB", args->database, "the database")->required();
+  command.add_option("NAME", args->name, "the shape")->required();
+  command.add_flag("--spectrum", args->spectrum,
+                   "the eigenvalues, at the mesh's own scale, as .npy, .npz or text");
+  add_common_options(command, context, true);
+  command.footer(
+      "The mesh comes out bit for bit as it went in, as .off, .obj or .ply.\n"
+      "Example:\n  timbre db export shapes.timbre cat3 -o cat3.ply");
+  command.callback([args, &context] { run(*args, context); });
+}
+
+}  // namespace timbre::cli

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/embedding/embedding.h"
+#include "timbre/analysis/signatures/distance_quantiles.h"
+#include "timbre/analysis/signatures/heat_kernel.h"
+#include "timbre/analysis/signatures/shape_dna.h"
+#include "timbre/analysis/signatures/wave_kernel.h"
+#include "timbre/cli/array_output.h"
+#include "timbre/cli/command.h"
+#include "timbre/cli/options.h"
+
+namespace timbre::cli {
+namespace {
+
+enum class SignatureKind : std::uint8_t { dna, dna_log, hks, wks, gps };
+
+struct Arguments {
+  std::string mesh;
+  SignatureKind signature = SignatureKind::hks;
+  EmbeddingOptions embedding;
+  int count = 100;
+  OperatorOptions op;
+};
+
+struct Solved {
+  Operator op;
+  Spectrum spectrum;  ///< at unit total area; `count` eigenvalues that are not zero
+};
+
+Solved solve(const Arguments& args, const Context& context) {
+  Solved solved;
+  const MeshFile file = load_mesh(context, args.mesh);
+  for_file(args.mesh, [&] {
+    solved.op = compute_operator(file.mesh, args.op);
+    const int zeros = static_cast<int>(solved.op.component_area.size());
+    solved.spectrum = at_unit_area(
+        compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()}),
+        solved.op.area);
+  });
+  return solved;
+}
+
+std::vector<NamedMatrix> signature_of(const Solved& solved, const Arguments& args) {
+  const Spectrum& spectrum = solved.spectrum;
+  switch (args.signature) {
+    case SignatureKind::dna:
+      return {{"dna", compute_shape_dna(spectrum, ShapeDnaForm::plain, args.count)}};
+    case SignatureKind::dna_log:
+      return {{"dna_log", compute_shape_dna(spectrum, ShapeDnaForm::logarithm, args.count)}};
+    case SignatureKind::hks: {
+      const Eigen::VectorXd times = heat_kernel_times(spectrum);
+      return {{"hks", compute_heat_kernel_signature(spectrum, times)}, {"times", times}};
+    }
+    case SignatureKind::wks: {
+      const WaveKernelBands bands = wave_kernel_bands(spectrum);
+      return {{"wks", compute_wave_kernel_signature(spectrum, bands)},
+              {"energies", bands.energies}};
+    }
+    case SignatureKind::gps:
+      break;
+  }
+  const Eigen::MatrixXd gps = compute_embedding(spectrum, {.dimensions = std::min(args.count, 25)});
+  return {{"gps_q", compute_distance_quantiles(gps, solved.op.lumped_mass)}};
+}
+
+// Without -o the numbers are the answer themselves.
+void answer(const std::vector<NamedMatrix>& matrices, const Arguments& args,
+            const Context& context) {
+  const NamedMatrix& main = matrices.front();
+  nlohmann::json document = {{"mesh", utf8_or_replaced(args.mesh)},
+                             {"kind", main.name},
+                             {"rows", main.values.rows()},
+                             {"columns", main.values.cols()}};
+  if (!context.output.empty()) {
+    context.write_result(context.output, to_file_bytes(context.output, matrices));
+    document["output"] = utf8_or_replaced(context.output);
+    if (context.json && context.output != "-") context.answer(document, "");
+    return;
+  }
+  if (context.json) {
+    for (const NamedMatrix& matrix : matrices) {
+      nlohmann::json rows = nlohmann::json::array();
+      for (const auto& row : matrix.values.rowwise()) {
+        rows.push_back(std::vector<double>(row.begin(), row.end()));
+      }
+      document[matrix.name == main.name ? "values" : matrix.name] = rows;
+    }
+  }
+  context.answer(document, context.json ? "" : to_rows_text(main.values));
+}
+
+void add_shared_options(CLI::App& command, Arguments& args, Context& context) {
+  command.add_option("MESH", args.mesh, "mesh file, or - for standard input")->required();
+  command.add_option("-k,--count", args.count, "eigenvalues used, zeros not counted")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  add_operator_options(command, args.op);
+  add_common_options(command, context, true);
+}
+
+}  // namespace
+
+void add_signature(CLI::App& timbre, Context& context) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& command = *timbre.add_subcommand(
+      "signature", "Descriptors of a mesh (dna, dna_log, gps) or of its vertices (hks, wks)");
+  command.add_option("--kind", args->signature, "dna, dna_log, hks, wks or gps")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SignatureKind>{{"dna", SignatureKind::dna},
+                                               {"dna_log", SignatureKind::dna_log},
+                                               {"hks", SignatureKind::hks},
+                                               {"wks", SignatureKind::wks},
+                                               {"gps", SignatureKind::gps}}))
+      ->default_str("hks");
+  add_shared_options(command, *args, context);
+  command.footer(
+      "-o F.npy, F.npz (with times or energies) or F.txt; all at unit total area.\n"
+      "Example:\n  timbre signature horse.ply --kind wks -k 200 -o horse_wks.npz");
+  command.callback(
+      [args, &context] { answer(signature_of(solve(*args, context), *args), *args, context); });
+}
+
+void add_embed(CLI::App& timbre, Context& context) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& command = *timbre.add_subcommand(
+      "embed", "Spectral coordinates of the vertices: gps, diffusion, biharmonic");
+  command.add_option("--kind", args->embedding.kind, "gps, diffusion or biharmonic")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, EmbeddingKind>{{"gps", EmbeddingKind::gps},
+                                               {"diffusion", EmbeddingKind::diffusion},
+                                               {"biharmonic", EmbeddingKind::biharmonic}}))
+      ->default_str("gps");
+  command.add_option("--time", args->embedding.time, "diffusion only, in units of total area")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-300, 1e300));
+  add_shared_options(command, *args, context);
+  command.footer(
+      "-o F.npy, F.npz (with eigenvalues) or F.txt: n x k, at unit total area.\n"
+      "Example:\n  timbre embed horse.ply --kind biharmonic -k 30 -o horse.npy");
+  command.callback([args, &context] {
+    const Solved solved = solve(*args, context);
+    EmbeddingOptions options = args->embedding;
+    options.dimensions = args->count;
+    answer({{"coordinates", compute_embedding(solved.spectrum, options)},
+            {"eigenvalues", solved.spectrum.values}},
+           *args, context);
+  });
+}
+
+}  // namespace timbre::cli

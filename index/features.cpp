@@ -1,0 +1,31 @@
+#include "timbre/index/features.h"
+
+#include <utility>
+
+namespace timbre {
+
+ShapeFeatures compute_features(TriangleMesh mesh, const StoreParameters& parameters,
+                               const Progress& progress) {
+  Operator op = compute_operator(mesh, {.kind = parameters.operator_kind, .mass = parameters.mass});
+  Spectrum spectrum = compute_spectrum(op, {.count = parameters.count, .progress = progress});
+  return {at_unit_area(std::move(spectrum), op.area), op.area, std::move(mesh),
+          std::move(op.lumped_mass)};
+}
+
+ShapeRecord compute_record(std::string name, std::string label, TriangleMesh mesh,
+                           const StoreParameters& parameters, const Progress& progress) {
+  ShapeFeatures features = compute_features(std::move(mesh), parameters, progress);
+  ShapeRecord record;
+  record.name = std::move(name);
+  record.label = std::move(label);
+  record.area = features.area;
+  record.eigenvalues = features.spectrum.values;
+  for (const Channel& channel : channels()) {
+    record.descriptors.push_back(
+        {channel.name, channel.version, channel.parameters, channel.compute(features)});
+  }
+  record.mesh = std::move(features.mesh);
+  return record;
+}
+
+}  // namespace timbre

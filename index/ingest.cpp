@@ -1,0 +1,193 @@
+#include "timbre/index/ingest.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <utility>
+
+#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/threads.h"
+#include "timbre/index/features.h"
+#include "timbre/index/labels.h"
+
+namespace timbre {
+namespace {
+
+using KnownContent = std::map<std::string, std::pair<Sha256Digest, std::string>>;
+
+// What a thread has made of one input.
+struct Computed {
+  IngestResult result;
+  ShapeRecord record;
+  bool solved = false;         ///< false: the store knew it, or `result.error` says why not
+  std::exception_ptr failure;  ///< nothing to do with the file: ends the whole
+};
+
+// Results of numbered tasks, worked on by several threads, taken in order by one.
+class OrderedPipeline {
+ public:
+  OrderedPipeline(std::size_t count, int threads, std::function<Computed(std::size_t)> work)
+      : count_(count), window_(2 * static_cast<std::size_t>(threads)), work_(std::move(work)) {
+    for (int t = 0; t < threads; ++t) threads_.emplace_back([this] { run(); });
+  }
+  ~OrderedPipeline() {
+    stopping_ = true;
+    { const std::lock_guard lock(mutex_); }
+    room_.notify_all();
+  }
+  OrderedPipeline(const OrderedPipeline&) = delete;
+  OrderedPipeline& operator=(const OrderedPipeline&) = delete;
+
+  /// The next result, or nothing after a tenth of a second without one.
+  std::optional<Computed> take() {
+    std::unique_lock lock(mutex_);
+    const auto is_there = [this] { return !done_.empty() && done_.begin()->first == taken_; };
+    if (!ready_.wait_for(lock, std::chrono::milliseconds(100), is_there)) return std::nullopt;
+    Computed computed = std::move(done_.begin()->second);
+    done_.erase(done_.begin());
+    ++taken_;
+    lock.unlock();
+    room_.notify_all();
+    return computed;
+  }
+
+ private:
+  void run() {
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      room_.wait(lock,
+                 [this] { return stopping_ || started_ == count_ || started_ < taken_ + window_; });
+      if (stopping_ || started_ == count_) return;
+      const std::size_t task = started_++;
+      lock.unlock();
+      Computed computed = work_(task);
+      lock.lock();
+      done_.emplace(task, std::move(computed));
+      lock.unlock();
+      ready_.notify_one();
+    }
+  }
+
+  std::size_t count_, window_;
+  std::function<Computed(std::size_t)> work_;
+  std::atomic<bool> stopping_ = false;
+  std::mutex mutex_;
+  std::condition_variable room_, ready_;
+  std::map<std::size_t, Computed> done_;
+  std::size_t started_ = 0, taken_ = 0;
+  std::vector<std::jthread> threads_;  // last: joined before what they use goes
+};
+
+std::string line_of(const Error& error, const std::string& path) {
+  return error.file().empty() ? error.in_file(path).what() : error.what();
+}
+
+void read_and_solve(const IngestInput& input, const StoreParameters& parameters,
+                    const KnownContent& known, const Progress& progress, bool replace,
+                    Computed& computed) {
+  const std::string& name = computed.result.name;
+  if (name.empty()) throw Error(ErrorKind::bad_input, "", "name", "is empty; --name gives one");
+  require_storable_text(name, "name");
+  require_storable_text(input.label, "label");
+  MeshFile file = read_mesh(input.path);
+  computed.result.warnings = std::move(file.warnings);
+  const auto entry = known.find(name);
+  if (entry != known.end() && entry->second.first == content_of(file.mesh) &&
+      (!replace || entry->second.second == input.label)) {
+    computed.result.outcome = AddOutcome::kept;
+    return;
+  }
+  computed.record = compute_record(name, input.label, std::move(file.mesh), parameters, progress);
+  computed.solved = true;
+}
+
+Computed compute(const IngestInput& input, const StoreParameters& parameters,
+                 const KnownContent& known, const Progress& progress, bool replace) {
+  Computed computed;
+  computed.result.path = input.path;
+  if (!input.name.empty()) {
+    computed.result.name = input.name;
+  } else if (input.path != "-") {
+    computed.result.name = shape_name_of(input.path);
+  }
+  try {
+    read_and_solve(input, parameters, known, progress, replace, computed);
+  } catch (const Error& error) {
+    computed.result.error = line_of(error, input.path);
+  } catch (const std::bad_alloc&) {
+    computed.result.error =
+        Error(ErrorKind::io, input.path, "memory", "not enough for this mesh").what();
+  } catch (...) {
+    computed.failure = std::current_exception();
+  }
+  return computed;
+}
+
+// A name that is taken concerns one file; all else that fails here concerns the database.
+void put_in(Store& store, Computed& computed, bool replace) {
+  if (!computed.solved) return;
+  try {
+    computed.result.outcome = store.add(computed.record, replace);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_request) throw;
+    computed.result.error = error.what();
+  }
+}
+
+void count(IngestSummary& summary, const std::optional<AddOutcome>& outcome) {
+  if (!outcome) {
+    ++summary.failed;
+  } else if (*outcome == AddOutcome::added) {
+    ++summary.added;
+  } else if (*outcome == AddOutcome::kept) {
+    ++summary.kept;
+  } else {
+    ++summary.replaced;
+  }
+}
+
+}  // namespace
+
+IngestSummary add_files(Store& store, const std::vector<IngestInput>& inputs,
+                        const IngestOptions& options,
+                        const std::function<void(const IngestResult&)>& on_result) {
+  IngestSummary summary;
+  KnownContent known;
+  for (ShapeInfo& shape : store.list()) {
+    known[std::move(shape.name)] = {shape.content, std::move(shape.label)};
+  }
+  const SingleThreadedBlas blas;
+  const int wanted = options.threads > 0 ? options.threads : hardware_threads();
+  const int threads = static_cast<int>(std::min(inputs.size(), static_cast<std::size_t>(wanted)));
+  const StoreParameters parameters = store.parameters();
+  std::atomic<bool> stop = false;
+  const Progress keep_going = [&stop](const ProgressStep&) { return !stop; };
+  struct StopOnLeaving {
+    std::atomic<bool>& flag;
+    ~StopOnLeaving() { flag = true; }
+  };
+  OrderedPipeline pipeline(inputs.size(), threads, [&](std::size_t i) {
+    return compute(inputs[i], parameters, known, keep_going, options.replace);
+  });
+  const StopOnLeaving stop_on_leaving{stop};
+  ProgressReporter reporter(options.progress, "shapes", static_cast<std::int64_t>(inputs.size()));
+  for (std::size_t done = 0; done < inputs.size();) {
+    reporter.advance_to(static_cast<std::int64_t>(done));
+    std::optional<Computed> computed = pipeline.take();
+    if (!computed) continue;
+    if (computed->failure) std::rethrow_exception(computed->failure);
+    put_in(store, *computed, options.replace);
+    count(summary, computed->result.outcome);
+    on_result(computed->result);
+    ++done;
+  }
+  return summary;
+}
+
+}  // namespace timbre

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Installs timbre into an empty folder, builds the README's example against it, runs it.
+# consume.sh BUILD_FOLDER SOURCE_FOLDER
+set -euo pipefail
+build=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+cmake --install "$build" --prefix "$work/installed" >/dev/null
+cmake -S "$source/tests/consume" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$work/installed" -DEXAMPLE="$source/docs/examples/first_steps.cpp" >/dev/null
+cmake --build "$work/build"
+"$work/installed/bin/timbre" dataset make ellipsoid -o "$work/a.ply" --resolution 8
+answer=$("$work/build/consumer" "$work/a.ply" "$work/a.ply")
+echo "$answer"
+grep -q "lambda_1 = " <<<"$answer"
+grep -q "vertex 0 -> " <<<"$answer"

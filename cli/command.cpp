@@ -62,8 +62,8 @@ class TerminalProgress {
       if (step.total > 0) line += "/" + std::to_string(step.total);
       if (step.done > 0 && step.total > step.done) {
         const auto done = static_cast<double>(step.done);
-        line += ", " + duration(passed * static_cast<double>(step.total - step.done) / done) +
-                " left";
+        line +=
+            ", " + duration(passed * static_cast<double>(step.total - step.done) / done) + " left";
       }
       write(line);
       shown_ = true;
@@ -136,7 +136,8 @@ void add_common_options(CLI::App& command, Context& context, bool output) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   if (output) {
-    command.add_option("-o,--output", context.output, "where the result goes; - for standard output");
+    command.add_option("-o,--output", context.output,
+                       "where the result goes; - for standard output");
     command.add_flag("--force", context.force, "let the result replace an existing file");
   }
 }
@@ -161,8 +162,7 @@ bool interrupted() { return interrupt_seen != 0; }
 std::string utf8_or_replaced(std::string_view text) {
   // dump() with this handler replaces invalid sequences; the quotes come off again.
   const nlohmann::json value = std::string(text);
-  return nlohmann::json::parse(
-             value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
+  return nlohmann::json::parse(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
       .get<std::string>();
 }
 

@@ -34,6 +34,9 @@ int complain(const std::string& line, int code) {
 void add_commands(CLI::App& app, timbre::cli::Context& context) {
   using namespace timbre::cli;  // NOLINT(google-build-using-namespace): the names of one room
   add_info(app, context);
+  add_spectrum(app, context);
+  add_match(app, context);
+  add_symmetry(app, context);
 }
 
 int run(int argc, char** argv) {
@@ -67,8 +70,10 @@ int main(int argc, char** argv) {
     if (error.place() == "standard output" && error.cause() == "Broken pipe") return 0;
     return complain(error.what(), exit_code(error.kind()));
   } catch (const std::bad_alloc&) {
-    return complain("memory: not enough; a smaller mesh, fewer eigenpairs (-k) or fewer threads "
-                    "need less", 1);
+    return complain(
+        "memory: not enough; a smaller mesh, fewer eigenpairs (-k) or fewer threads "
+        "need less",
+        1);
   } catch (const std::exception& other) {
     return complain(std::string("internal error: ") + other.what(), 1);
   }

@@ -127,6 +127,12 @@ std::string to_npy(const Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::R
   return npy("<i4", false, shape_of(faces.rows(), 3), faces.data(), bytes_of(faces));
 }
 
+std::string to_npy(const std::string& ascii) {
+  std::u32string wide(ascii.begin(), ascii.end());
+  return npy("<U" + std::to_string(wide.size()), false, "", wide.data(),
+             wide.size() * sizeof(char32_t));
+}
+
 std::string to_npz(const std::vector<NamedArray>& arrays) {
   ZipWriter zip;
   for (const NamedArray& array : arrays) zip.add(array);

@@ -17,6 +17,8 @@ namespace timbre {
     const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& points);
 [[nodiscard]] std::string to_npy(
     const Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>& faces);
+/// A zero-dimensional text; ASCII only.
+[[nodiscard]] std::string to_npy(const std::string& ascii);
 
 /// One array of an archive: `bytes` as `to_npy` makes them.
 struct NamedArray {

@@ -6,15 +6,9 @@
 
 #include "timbre/analysis/core/progress.h"
 #include "timbre/analysis/operators/operator.h"
+#include "timbre/analysis/spectrum/factorization.h"
 
 namespace timbre {
-
-/// Which library factorises `W - s M`.
-enum class FactorizationBackend : std::uint8_t {
-  automatic,  ///< CHOLMOD where timbre was built with it, Eigen otherwise
-  cholmod,    ///< supernodal LL^T of SuiteSparse
-  eigen,      ///< SimplicialLDLT of Eigen; always there
-};
 
 struct SpectrumOptions {
   int count = 100;          ///< eigenpairs wanted, from the lowest; capped at n

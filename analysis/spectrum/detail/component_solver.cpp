@@ -1,0 +1,236 @@
+#include "timbre/analysis/spectrum/detail/component_solver.h"
+
+#include <Spectra/SymGEigsShiftSolver.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+#include "timbre/analysis/core/matrix_product.h"
+
+namespace timbre::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// A shift below the spectrum, in units of it: Weyl's density is one pair per 4 pi at
+// unit area. W - s M is then positive definite, and far enough from singular.
+constexpr double kShift = -0.01 * 4.0 * std::numbers::pi;
+constexpr Index kDenseSize = 200;
+
+SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32_t>& rows,
+                        const std::vector<std::int32_t>& local) {
+  const auto n = static_cast<Index>(rows.size());
+  SparseMatrix part(n, n);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index j = 0; j < n; ++j) {
+    for (SparseMatrix::InnerIterator it(matrix, rows[static_cast<std::size_t>(j)]); it; ++it) {
+      entries.emplace_back(local[static_cast<std::size_t>(it.row())], j, it.value());
+    }
+  }
+  part.setFromTriplets(entries.begin(), entries.end());
+  return part;
+}
+
+// (W - s M)^-1 for Spectra, on the M-orthogonal complement of the known pairs.
+class ShiftInverse {
+ public:
+  using Scalar = double;
+
+  ShiftInverse(const Component& component, const MatrixXd* known,
+               const ComponentSolveOptions& options)
+      : size_(component.size()),
+        factor_(SparseMatrix(component.stiffness - kShift * component.mass), options.backend),
+        on_solve_(options.on_solve) {
+    if (known == nullptr) return;
+    known_ = *known;
+    mass_known_ = component.mass * known_;
+  }
+
+  [[nodiscard]] Index rows() const { return size_; }
+  [[nodiscard]] Index cols() const { return size_; }
+  void set_shift(double) {}  // factorised once, for kShift
+
+  void perform_op(const double* x, double* y) const {
+    factor_.solve(x, y);
+    Eigen::Map<VectorXd> out(y, size_);
+    if (known_.cols() > 0) out -= known_ * (mass_known_.transpose() * out);
+    if (on_solve_) on_solve_();
+  }
+
+ private:
+  Index size_;
+  mutable Factorization factor_;
+  MatrixXd known_, mass_known_;
+  std::function<void()> on_solve_;
+};
+
+class MassProduct {
+ public:
+  using Scalar = double;
+  explicit MassProduct(const Component& component)
+      : mass_(component.mass),
+        lumped_(component.diagonal_mass ? component.lumped_mass : VectorXd()) {}
+  [[nodiscard]] Index rows() const { return mass_.rows(); }
+  [[nodiscard]] Index cols() const { return mass_.cols(); }
+  void perform_op(const double* x, double* y) const {
+    const Eigen::Map<const VectorXd> in(x, rows());
+    Eigen::Map<VectorXd> out(y, rows());
+    if (lumped_.size() > 0) {
+      out = lumped_.cwiseProduct(in);
+    } else {
+      out = mass_ * in;
+    }
+  }
+
+ private:
+  const SparseMatrix& mass_;
+  VectorXd lumped_;
+};
+
+VectorXd start_vector(Index n, int seed) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
+  VectorXd start(n);
+  for (double& x : start) x = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  return start;
+}
+
+struct Pairs {
+  VectorXd values;
+  MatrixXd vectors;
+};
+
+bool run_lanczos(const Component& component, Index count, const MatrixXd* known,
+                 const ComponentSolveOptions& options, Pairs& found) {
+  const Index n = component.size();
+  ShiftInverse inverse(component, known, options);
+  MassProduct mass(component);
+  const Index space = std::min(n, (2 + options.attempt) * count + 20 * (1 + options.attempt));
+  using Solver =
+      Spectra::SymGEigsShiftSolver<ShiftInverse, MassProduct, Spectra::GEigsMode::ShiftInvert>;
+  try {
+    Solver solver(inverse, mass, count, space, kShift);
+    const VectorXd start = start_vector(n, 2 * options.attempt + (known != nullptr ? 1 : 0));
+    solver.init(start.data());
+    constexpr Index kRestarts = 300;
+    if (solver.compute(Spectra::SortRule::LargestMagn, kRestarts, 1e-10,
+                       Spectra::SortRule::SmallestAlge) < count) {
+      return false;
+    }
+    found.values = solver.eigenvalues();
+    found.vectors = solver.eigenvectors();
+  } catch (const std::runtime_error&) {
+    return false;  // Spectra's own small eigenproblem failed
+  }
+  return true;
+}
+
+// With a diagonal mass an ordinary eigenproblem after scaling by its square root.
+void solve_dense(Component& component, Index count) {
+  const MatrixXd W = component.stiffness;
+  if (component.diagonal_mass) {
+    const VectorXd scale = component.lumped_mass.cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> dense(scale.asDiagonal() * W *
+                                                        scale.asDiagonal());
+    component.values = dense.eigenvalues().head(count);
+    component.vectors = scale.asDiagonal() * dense.eigenvectors().leftCols(count);
+  } else {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(W, MatrixXd(component.mass));
+    component.values = dense.eigenvalues().head(count);
+    component.vectors = dense.eigenvectors().leftCols(count);
+  }
+}
+
+void sort_pairs(Component& component) {
+  const Index k = component.values.size();
+  std::vector<Index> order(static_cast<std::size_t>(k));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return component.values[a] < component.values[b]; });
+  component.values = VectorXd(component.values(order));
+  component.vectors = MatrixXd(component.vectors(Eigen::all, order));
+}
+
+// The kernel of W is known: the constants. It replaces what the solver found of it.
+void put_exact_zero(Component& component) {
+  component.values[0] = 0.0;
+  component.vectors.col(0).setConstant(1.0 / std::sqrt(component.lumped_mass.sum()));
+  component.values = component.values.cwiseMax(0.0);
+}
+
+}  // namespace
+
+std::vector<Component> split_into_components(const Operator& op) {
+  std::vector<Component> components(static_cast<std::size_t>(op.component_area.size()));
+  std::vector<std::int32_t> local(op.component.size(), -1);
+  for (std::size_t v = 0; v < op.component.size(); ++v) {
+    if (op.component[v] < 0) continue;
+    auto& vertices = components[static_cast<std::size_t>(op.component[v])].vertices;
+    local[v] = static_cast<std::int32_t>(vertices.size());
+    vertices.push_back(static_cast<std::int32_t>(v));
+  }
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    Component& part = components[c];
+    part.area = op.component_area[static_cast<Index>(c)];
+    part.diagonal_mass = op.mass_kind == MassKind::lumped;
+    part.stiffness = restricted(op.stiffness, part.vertices, local);
+    part.mass = restricted(op.mass, part.vertices, local) / part.area;
+    part.lumped_mass = op.lumped_mass(part.vertices) / part.area;
+  }
+  return components;
+}
+
+bool solve_lowest(Component& component, Index count, const ComponentSolveOptions& options) {
+  const Index n = component.size();
+  count = std::min(count, n);
+  if (n <= kDenseSize || count > n / 4) {
+    solve_dense(component, count);
+  } else {
+    Pairs found;
+    if (!run_lanczos(component, count, nullptr, options, found)) return false;
+    component.values = std::move(found.values);
+    component.vectors = std::move(found.vectors);
+  }
+  sort_pairs(component);
+  put_exact_zero(component);
+  return true;
+}
+
+bool add_missing(Component& component, Index missing, const ComponentSolveOptions& options) {
+  const Index known = component.values.size();
+  missing = std::min(missing, component.size() - known - 1);
+  if (missing < 1) return false;
+  Pairs found;
+  if (!run_lanczos(component, missing, &component.vectors, options, found)) return false;
+  component.values.conservativeResize(known + missing);
+  component.vectors.conservativeResize(Eigen::NoChange, known + missing);
+  component.values.tail(missing) = found.values;
+  component.vectors.rightCols(missing) = found.vectors;
+  sort_pairs(component);
+  put_exact_zero(component);
+  return true;
+}
+
+VectorXd relative_residuals(const Component& component) {
+  const MatrixXd mass_vectors = component.mass * component.vectors;
+  const MatrixXd errors =
+      component.stiffness * component.vectors - mass_vectors * component.values.asDiagonal();
+  // A lone constant has no scale of its own; Weyl's density gives it one.
+  const double largest = component.values.size() > 1 ? component.values.maxCoeff() : 0.0;
+  const double scale = largest > 0.0 ? largest : 4.0 * std::numbers::pi;
+  VectorXd residuals(component.values.size());
+  for (Index i = 0; i < residuals.size(); ++i) {
+    const double error =
+        std::sqrt((errors.col(i).array().square() / component.lumped_mass.array()).sum());
+    const double norm = std::sqrt(component.vectors.col(i).dot(mass_vectors.col(i)));
+    residuals[i] = error / ((component.values[i] + scale) * norm);
+  }
+  return residuals;
+}
+
+}  // namespace timbre::detail

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "timbre/analysis/operators/operator.h"
+#include "timbre/analysis/spectrum/factorization.h"
+
+namespace timbre::detail {
+
+/// One connected component of a mesh, scaled to unit area, and the eigenpairs found
+/// so far. A lone component has exactly one zero eigenvalue, of the constant function.
+struct Component {
+  std::vector<std::int32_t> vertices;  ///< rows of the whole mesh
+  SparseMatrix stiffness;
+  SparseMatrix mass;
+  Eigen::VectorXd lumped_mass;
+  double area = 0.0;  ///< true area; eigenvalues here are `area` times the true ones
+  bool diagonal_mass = true;
+
+  Eigen::VectorXd values;   ///< ascending, the lowest of the component
+  Eigen::MatrixXd vectors;  ///< M-orthonormal
+
+  [[nodiscard]] Eigen::Index size() const { return stiffness.rows(); }
+  [[nodiscard]] bool exhausted() const { return values.size() == size(); }
+};
+
+[[nodiscard]] std::vector<Component> split_into_components(const Operator& op);
+
+struct ComponentSolveOptions {
+  FactorizationBackend backend = FactorizationBackend::automatic;
+  int attempt = 0;                 ///< higher: larger Krylov space, another start vector
+  std::function<void()> on_solve;  ///< after each solve with the factor; may throw
+};
+
+/// Replaces the pairs by the lowest `count` (capped at n). Dense for a small component
+/// or a large share of its pairs, else shift-invert Lanczos.
+/// @return false when the iteration did not converge
+[[nodiscard]] bool solve_lowest(Component& component, Eigen::Index count,
+                                const ComponentSolveOptions& options);
+
+/// Adds the `missing` lowest pairs among those M-orthogonal to the ones known: finds the
+/// further copies of a multiple eigenvalue, which one start vector cannot see.
+/// @return false when the iteration did not converge
+[[nodiscard]] bool add_missing(Component& component, Eigen::Index missing,
+                               const ComponentSolveOptions& options);
+
+/// Relative residual of each pair, in the norm of the inverse lumped mass.
+[[nodiscard]] Eigen::VectorXd relative_residuals(const Component& component);
+
+}  // namespace timbre::detail

@@ -1,0 +1,141 @@
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "timbre/analysis/core/array_file.h"
+#include "timbre/analysis/core/number_text.h"
+#include "timbre/analysis/spectrum/spectrum.h"
+#include "timbre/cli/command.h"
+#include "timbre/cli/options.h"
+#include "timbre/cli/version.h"
+
+namespace timbre::cli {
+namespace {
+
+struct Arguments {
+  std::string mesh;
+  OperatorOptions op;
+  SpectrumOptions spectrum;
+};
+
+void add_sparse(std::vector<NamedArray>& arrays, const std::string& name,
+                const SparseMatrix& matrix) {
+  const Eigen::Index nonzeros = matrix.nonZeros();
+  using Eigen::Map;
+  using Eigen::VectorXd;
+  using Eigen::VectorXi;
+  arrays.push_back(
+      {name + "_data", to_npy(VectorXd(Map<const VectorXd>(matrix.valuePtr(), nonzeros)))});
+  arrays.push_back(
+      {name + "_indices", to_npy(VectorXi(Map<const VectorXi>(matrix.innerIndexPtr(), nonzeros)))});
+  arrays.push_back({name + "_indptr", to_npy(VectorXi(Map<const VectorXi>(matrix.outerIndexPtr(),
+                                                                          matrix.cols() + 1)))});
+  const auto rows = static_cast<int>(matrix.rows());
+  arrays.push_back({name + "_shape", to_npy(VectorXi(Eigen::Vector2i(rows, rows)))});
+}
+
+std::string npz(const TriangleMesh& mesh, const Operator& op, const Spectrum& found) {
+  std::vector<NamedArray> arrays = {
+      {"vertices", to_npy(mesh.vertices)},    {"faces", to_npy(mesh.faces)},
+      {"evals", to_npy(found.values)},        {"evecs", to_npy(found.vectors)},
+      {"residuals", to_npy(found.residuals)}, {"mass", to_npy(op.lumped_mass)}};
+  add_sparse(arrays, "W", op.stiffness);
+  if (op.mass_kind == MassKind::consistent) add_sparse(arrays, "M", op.mass);
+  const int certified = found.certificate ? 1 : 0;
+  arrays.push_back({"certified", to_npy(Eigen::VectorXi(Eigen::VectorXi::Constant(1, certified)))});
+  arrays.push_back({"timbre_version", to_npy(version_number())});
+  return to_npz(arrays);
+}
+
+std::string lines(const Eigen::VectorXd& values) {
+  std::string text;
+  for (const double value : values) text += to_text(value) + "\n";
+  return text;
+}
+
+void write_spectrum(const Context& context, const TriangleMesh& mesh, const Operator& op,
+                    const Spectrum& found) {
+  const std::string format = array_format(context.output);
+  if (format == "npz") {
+    context.write_result(context.output, npz(mesh, op, found));
+  } else if (format == "npy") {
+    const std::string stem = context.output.substr(0, context.output.size() - 4);
+    context.write_result(stem + ".evals.npy", to_npy(found.values));
+    context.write_result(context.output, to_npy(found.vectors));
+  } else {
+    context.write_result(context.output, lines(found.values));
+  }
+}
+
+nlohmann::json to_json(const std::optional<Certificate>& certificate) {
+  if (!certificate) return nullptr;
+  return {{"bound", certificate->bound}, {"count", certificate->count}};
+}
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void run(const Arguments& args, const Context& context) {
+  if (!context.output.empty()) (void)array_format(context.output);
+  Stopwatch watch;
+  nlohmann::json timings;
+  const MeshFile file = load_mesh(context, args.mesh);
+  timings["read"] = watch.lap();
+  const Operator op = for_file(args.mesh, [&] { return compute_operator(file.mesh, args.op); });
+  timings["operator"] = watch.lap();
+  SpectrumOptions options = args.spectrum;
+  options.progress = context.progress();
+  const Spectrum found = for_file(args.mesh, [&] { return compute_spectrum(op, options); });
+  timings["spectrum"] = watch.lap();
+  if (found.values.size() < options.count) {
+    context.note(args.mesh + ": has only " + std::to_string(found.values.size()) +
+                 " eigenpairs, one for each vertex in use");
+  }
+  if (!context.output.empty()) write_spectrum(context, file.mesh, op, found);
+  if (context.output == "-") return;
+
+  const std::vector<double> values(found.values.begin(), found.values.end());
+  context.answer({{"mesh", utf8_or_replaced(args.mesh)},
+                  {"eigenvalues", values},
+                  {"zeros", found.zeros},
+                  {"residual", found.residuals.maxCoeff()},
+                  {"orthonormality", found.orthonormality},
+                  {"certificate", to_json(found.certificate)},
+                  {"operator", to_word(op.kind)},
+                  {"mass", to_word(op.mass_kind)},
+                  {"area", op.area},
+                  {"timings", timings}},
+                 context.output.empty() ? lines(found.values) : "wrote " + context.output + "\n");
+}
+
+}  // namespace
+
+void add_spectrum(CLI::App& timbre, Context& context) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& command = *timbre.add_subcommand("spectrum", "Lowest eigenpairs of the Laplacian");
+  command.add_option("MESH", args->mesh, "mesh file, or - for standard input")->required();
+  command.add_option("-k,--count", args->spectrum.count, "eigenpairs wanted")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  add_operator_options(command, args->op);
+  command.add_option("--tolerance", args->spectrum.tolerance, "largest relative residual accepted")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-14, 1.0));
+  command.add_flag("!--no-certify", args->spectrum.certify, "skip the proof that none is missing");
+  add_common_options(command, context, true);
+  command.footer(
+      "Without -o the eigenvalues are printed, one a line. F.npz holds mesh, matrices and\n"
+      "eigenpairs; F.npy the eigenfunctions, with F.evals.npy beside it.\n"
+      "Example:\n  timbre spectrum horse.ply -k 200 -o horse.npz");
+  command.callback([args, &context] { run(*args, context); });
+}
+
+}  // namespace timbre::cli

@@ -1,0 +1,29 @@
+#include "timbre/cli/options.h"
+
+#include <filesystem>
+#include <map>
+
+#include "timbre/analysis/core/error.h"
+
+namespace timbre::cli {
+
+void add_operator_options(CLI::App& command, OperatorOptions& options) {
+  command.add_option("--operator", options.kind, "the Laplacian: cotan")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, OperatorKind>{{"cotan", OperatorKind::cotan}}))
+      ->default_str(to_word(options.kind));
+  command.add_option("--mass", options.mass, "mass matrix: lumped or consistent")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, MassKind>{
+          {"lumped", MassKind::lumped}, {"consistent", MassKind::consistent}}))
+      ->default_str(to_word(options.mass));
+}
+
+std::string array_format(const std::string& path) {
+  if (path == "-") return "txt";
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == ".npz" || ending == ".npy" || ending == ".txt") return ending.substr(1);
+  throw Error(ErrorKind::bad_request, path, "output",
+              "ending '" + ending + "' is unknown; .npz, .npy and .txt are written");
+}
+
+}  // namespace timbre::cli

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "timbre/analysis/operators/operator.h"
+
+namespace timbre::cli {
+
+// Options that mean the same in every command.
+
+/// --operator and --mass.
+void add_operator_options(CLI::App& command, OperatorOptions& options);
+
+/// What the ending of an output name asks for: "npz", "npy" or "txt".
+/// @throws Error  bad_request for another ending; "-" is text
+[[nodiscard]] std::string array_format(const std::string& path);
+
+}  // namespace timbre::cli

@@ -1,0 +1,275 @@
+#include "timbre/matching/match.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "timbre/analysis/core/threads.h"
+#include "timbre/matching/candidates.h"
+
+namespace timbre {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::array kSampleSizes = {20, 24, 28, 32, 36, 40, 45, 50};
+constexpr std::array kVertexSizes = {50, 60, 72, 86, 100};
+// Space counts from the start, at small sizes, where it still moves the map.
+constexpr std::array kDenseSteps = {DenseStep{100, 2.0, 0.005, 40}, DenseStep{120, 2.0, 0.005, 60},
+                                    DenseStep{150, 2.0, 0.005, 100},
+                                    DenseStep{200, 2.0, 0.005, 150}};
+constexpr int kVertexSamples = 800;
+constexpr double kDistinct = 0.06;     // mean distance of maps that are different answers
+constexpr double kCloseEnergy = 0.25;  // closer than this: compare after dense refinement
+constexpr double kDoubtEnergy = 0.1;   // closer than this: say so
+
+struct Rival {
+  Candidate candidate;
+  SampledMaps sampled;
+  MapEnergies energies;
+  double sample_energy = 0.0;
+  FunctionalMaps functional;
+  double energy = 0.0;
+  std::optional<DenseMaps> dense;
+};
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+class Matcher {
+ public:
+  Matcher(const MatchSurface& A, const MatchSurface& B, const MatchOptions& options)
+      : a_(A),
+        b_(B),
+        options_(options),
+        oriented_(A.orientation == Orientation::outward && B.orientation == Orientation::outward),
+        reporter_(options.progress, "matching", 4) {}
+
+  MatchResult run() {
+    MatchResult result;
+    Stopwatch watch;
+    std::vector<Candidate> candidates = search();
+    result.timings.search = watch.lap();
+    reporter_.advance();
+    std::vector<Rival> rivals = compare_on_samples(std::move(candidates));
+    result.timings.samples = watch.lap();
+    reporter_.advance();
+    compare_on_vertices(rivals);
+    result.timings.vertices = watch.lap();
+    reporter_.advance();
+    refine_best(rivals);
+    result.timings.dense = watch.lap();
+    reporter_.advance();
+    report(rivals, result);
+    return result;
+  }
+
+ private:
+  std::vector<Candidate> search() {
+    std::array<std::vector<Candidate>, 2> found;
+    parallel_for(2, options_.threads, [&](std::int64_t i) {
+      found[static_cast<std::size_t>(i)] = search_candidates(a_, b_, i == 0 ? 1 : -1);
+    });
+    std::vector<Candidate> all;
+    for (std::vector<Candidate>& half : found) {
+      if (half.size() > static_cast<std::size_t>(options_.candidates)) {
+        half.resize(static_cast<std::size_t>(options_.candidates));
+      }
+      std::move(half.begin(), half.end(), std::back_inserter(all));
+    }
+    return all;
+  }
+
+  std::vector<Rival> compare_on_samples(std::vector<Candidate> candidates) {
+    std::vector<Rival> all(candidates.size());
+    parallel_for(static_cast<std::int64_t>(all.size()), options_.threads, [&](std::int64_t i) {
+      Rival& rival = all[static_cast<std::size_t>(i)];
+      rival.candidate = std::move(candidates[static_cast<std::size_t>(i)]);
+      rival.sampled = zoom_out_on_samples(a_, b_, rival.candidate.C, kSampleSizes);
+      rival.energies = measure_energies(a_, b_, rival.sampled);
+      rival.sample_energy = sample_score(rival.energies, rival.candidate.orientation);
+    });
+    std::stable_sort(all.begin(), all.end(), [](const Rival& x, const Rival& y) {
+      return x.sample_energy < y.sample_energy;
+    });
+    std::vector<Rival> kept;
+    for (const int orientation : {1, -1}) keep_distinct(all, orientation, kept);
+    return kept;
+  }
+
+  // The best few of one orientation, no two nearly the same map. The search's own
+  // favourite always passes: its score and the energies err on different shapes.
+  void keep_distinct(std::vector<Rival>& all, int orientation, std::vector<Rival>& kept) {
+    std::vector<Rival*> own;
+    for (Rival& rival : all) {
+      if (rival.candidate.orientation == orientation) own.push_back(&rival);
+    }
+    if (own.empty()) return;
+    const auto favourite = std::max_element(own.begin(), own.end(), [](Rival* x, Rival* y) {
+      return x->candidate.score() < y->candidate.score();
+    });
+    std::rotate(own.begin(), favourite, favourite + 1);
+    const int wanted = oriented_ && orientation < 0 ? 1 : options_.rivals;
+    std::vector<Rival> distinct;
+    for (Rival* rival : own) {
+      const bool is_new = std::all_of(distinct.begin(), distinct.end(), [&](const Rival& other) {
+        return map_distance(a_, b_, rival->sampled.points.ab, other.sampled.points.ab) > kDistinct;
+      });
+      if (is_new) distinct.push_back(*rival);
+      if (static_cast<int>(distinct.size()) == wanted) break;
+    }
+    std::move(distinct.begin(), distinct.end(), std::back_inserter(kept));
+  }
+
+  void compare_on_vertices(std::vector<Rival>& rivals) {
+    parallel_for(static_cast<std::int64_t>(rivals.size()), options_.threads, [&](std::int64_t i) {
+      Rival& rival = rivals[static_cast<std::size_t>(i)];
+      rival.functional =
+          zoom_out_to_vertices(a_, b_, rival.sampled.functional, kVertexSizes, kVertexSamples, 1);
+      const double bands = curvature_bands(a_, b_, rival.functional);
+      const double commutation =
+          commutation_error(a_, b_, rival.functional.ab, rival.functional.ab.rows());
+      rival.energy = 0.3 * rival.sample_energy - 3.0 * bands + 2.0 * commutation -
+                     4.0 * rival.candidate.score();
+    });
+    std::stable_sort(rivals.begin(), rivals.end(), [&](const Rival& x, const Rival& y) {
+      return std::pair(misoriented(x), x.energy) < std::pair(misoriented(y), y.energy);
+    });
+  }
+
+  [[nodiscard]] bool misoriented(const Rival& rival) const {
+    return oriented_ && rival.candidate.orientation < 0;
+  }
+
+  void refine(Rival& rival) {
+    rival.dense = refine_densely(a_, b_, rival.functional, kDenseSteps, rival.candidate.orientation,
+                                 options_.threads);
+  }
+
+  // A close second is refined too. The better dense map takes the better energy, so that
+  // energies stay in the order of the answer.
+  void refine_best(std::vector<Rival>& rivals) {
+    if (rivals.empty()) return;
+    refine(rivals[0]);
+    if (rivals.size() < 2 || misoriented(rivals[1])) return;
+    if (rivals[1].energy - rivals[0].energy > kCloseEnergy) return;
+    refine(rivals[1]);
+    const double first = dense_score(a_, b_, *rivals[0].dense, rivals[0].candidate.orientation);
+    const double second = dense_score(a_, b_, *rivals[1].dense, rivals[1].candidate.orientation);
+    const double low = std::min(rivals[0].energy, rivals[1].energy);
+    if (second < first) std::swap(rivals[0], rivals[1]);
+    rivals[0].energy = low;
+    // Dense scores differ by a fifth of what energies differ by.
+    rivals[1].energy = low + 5.0 * std::abs(second - first);
+  }
+
+  void report(std::vector<Rival>& rivals, MatchResult& result) {
+    result.ab.assign(static_cast<std::size_t>(a_.file_vertices), -1);
+    result.ba.assign(static_cast<std::size_t>(b_.file_vertices), -1);
+    if (rivals.empty()) {
+      result.reason = "the shapes have too few eigenfunctions to compare";
+      return;
+    }
+    double total = 0.0;
+    for (Rival& rival : rivals) {
+      MatchSolution solution;
+      solution.energy = rival.energy;
+      solution.orientation = !oriented_                        ? MapOrientation::unknown
+                             : rival.candidate.orientation > 0 ? MapOrientation::direct
+                                                               : MapOrientation::mirrored;
+      solution.energies = rival.energies;
+      solution.coverage = rival.energies.coverage;
+      // A mirrored rival is excluded by orientation, not by its energy.
+      solution.confidence =
+          misoriented(rival) ? 0.0 : std::exp((rivals[0].energy - rival.energy) / kDoubtEnergy);
+      total += solution.confidence;
+      solution.functional =
+          rival.dense ? std::move(rival.dense->functional) : std::move(rival.functional);
+      result.solutions.push_back(std::move(solution));
+    }
+    for (MatchSolution& solution : result.solutions) solution.confidence /= total;
+    const PointMaps& points = rivals[0].dense->points;
+    result.solutions[0].coverage =
+        0.5 * (covered_area(b_, points.ab) + covered_area(a_, points.ba));
+    result.switches = find_switches(result.solutions[0].functional.ab, 20);
+    write_back(a_, b_, points.ab, result.ab);
+    write_back(b_, a_, points.ba, result.ba);
+    judge(result);
+  }
+
+  static void write_back(const MatchSurface& from, const MatchSurface& to, const PointMap& rows,
+                         PointMap& file) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      file[static_cast<std::size_t>(from.vertex[i])] = to.vertex[static_cast<std::size_t>(rows[i])];
+    }
+  }
+
+  void judge(MatchResult& result) const {
+    const MatchSolution& best = result.solutions[0];
+    const double agreement = std::abs(best.energies.areas);
+    if (agreement < 0.3 || best.energies.geodesic > 0.16) {
+      result.verdict = Verdict::failed;
+      result.reason = "the best map stretches distances and area forms too much to be one";
+    } else if (!oriented_) {
+      result.verdict = Verdict::ambiguous;
+      result.reason =
+          "a shape is open, non-manifold or one-sided: left and right cannot be told apart";
+    } else if (result.solutions.size() > 1 &&
+               result.solutions[1].orientation == MapOrientation::direct &&
+               result.solutions[1].energy - best.energy < kDoubtEnergy) {
+      result.verdict = Verdict::ambiguous;
+      result.reason = "another map is nearly as good";
+    } else {
+      result.verdict = Verdict::clear;
+    }
+  }
+
+  const MatchSurface& a_;
+  const MatchSurface& b_;
+  const MatchOptions& options_;
+  bool oriented_;
+  ProgressReporter reporter_;
+};
+
+}  // namespace
+
+MatchResult match(const MatchSurface& A, const MatchSurface& B, const MatchOptions& options) {
+  const SingleThreadedBlas blas;
+  return Matcher(A, B, options).run();
+}
+
+const char* to_word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::clear:
+      return "clear";
+    case Verdict::ambiguous:
+      return "ambiguous";
+    case Verdict::failed:
+      break;
+  }
+  return "failed";
+}
+
+const char* to_word(MapOrientation orientation) {
+  switch (orientation) {
+    case MapOrientation::direct:
+      return "direct";
+    case MapOrientation::mirrored:
+      return "mirrored";
+    case MapOrientation::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+}  // namespace timbre

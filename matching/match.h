@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "timbre/analysis/core/progress.h"
+#include "timbre/matching/refinement.h"
+#include "timbre/matching/selection.h"
+#include "timbre/matching/surface.h"
+#include "timbre/matching/switches.h"
+
+namespace timbre {
+
+enum class Verdict : std::uint8_t {
+  clear,      ///< one solution stands out
+  ambiguous,  ///< another solution is nearly as good, or left and right cannot be told
+  failed,     ///< no solution looks like a map between these two shapes
+};
+
+enum class MapOrientation : std::uint8_t {
+  direct,    ///< keeps orientation, as a change of pose does
+  mirrored,  ///< turns left into right
+  unknown,   ///< a shape is open or one-sided
+};
+
+/// One answer among several, best first.
+struct MatchSolution {
+  double energy = 0.0;  ///< small is good; comparable within one match only
+  MapOrientation orientation = MapOrientation::unknown;
+  double coverage = 0.0;    ///< share of both areas that is hit
+  double confidence = 0.0;  ///< share among the solutions by energy; not calibrated
+  MapEnergies energies;     ///< on samples
+  FunctionalMaps functional;
+};
+
+struct MatchTimings {
+  double search = 0.0, samples = 0.0, vertices = 0.0, dense = 0.0;  ///< seconds
+};
+
+struct MatchResult {
+  Verdict verdict = Verdict::failed;
+  std::string reason;  ///< why the verdict is not `clear`; empty if it is
+  std::vector<MatchSolution> solutions;
+  std::vector<Switch> switches;  ///< of the best solution, first 20 functions
+  PointMap ab;  ///< best solution: for each vertex of file A one of file B, -1 = unmatched
+  PointMap ba;
+  MatchTimings timings;
+};
+
+struct MatchOptions {
+  int candidates = 12;  ///< taken from the search, of each orientation
+  int rivals = 4;       ///< distinct maps that are refined and compared
+  int threads = 0;      ///< 0: all cores; the result does not depend on it
+  Progress progress = {};
+};
+
+/// Maps two nearly isometric surfaces onto each other, and says how sure it is.
+///
+/// Every sign and order of the low eigenfunctions is a hypothesis (`search_candidates`),
+/// in both orientations; the candidates are refined on samples and compared by several
+/// energies, the best distinct ones again on all vertices, close rivals once more after
+/// dense refinement. Where both shapes are closed the answer keeps orientation, and the
+/// best mirrored map stands among the solutions.
+///
+/// Vertices outside the largest component, or in no triangle, are unmatched (-1).
+[[nodiscard]] MatchResult match(const MatchSurface& A, const MatchSurface& B,
+                                const MatchOptions& options = {});
+
+[[nodiscard]] const char* to_word(Verdict verdict);
+[[nodiscard]] const char* to_word(MapOrientation orientation);
+
+}  // namespace timbre

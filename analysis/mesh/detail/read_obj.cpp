@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/analysis/mesh/detail/formats.h"

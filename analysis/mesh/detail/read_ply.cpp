@@ -1,4 +1,6 @@
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "timbre/analysis/mesh/detail/formats.h"
 #include "timbre/analysis/mesh/detail/ply_header.h"

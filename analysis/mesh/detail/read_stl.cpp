@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include "timbre/analysis/mesh/detail/formats.h"
 #include "timbre/analysis/mesh/detail/grouping.h"

@@ -12,9 +12,9 @@
 namespace timbre {
 
 struct ArticulatedOptions {
-  /// Vertices of a mesh, met within a few per cent. Fewer than about 1,500 cannot
-  /// resolve the legs of the thinner species; legal are 1,000 to 50,000.
-  int vertices = 3000;
+  /// Vertices of a mesh, met within a few per cent. Fewer than about 3,000 may not
+  /// resolve the thin limbs of some species; legal are 1,000 to 50,000.
+  int vertices = 3500;
   std::uint64_t seed = 1;  ///< of poses, proportions and shuffling
   double variation = 0.0;  ///< proportions differ by up to this share from seed to seed; below 0.3
   bool shuffle = false;    ///< vertices and faces in random order, another for each pose

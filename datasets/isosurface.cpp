@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
-#include <unordered_map>
 #include <utility>
 
 #include "timbre/datasets/detail/half_surface.h"
@@ -67,10 +65,9 @@ class Lattice {
   }
 
   [[nodiscard]] Vector3d position(Node n) const {
-    const auto w = static_cast<double>(n % size_[2]);
-    const auto v = static_cast<double>(n / size_[2] % size_[1]);
-    const auto u = static_cast<double>(n / size_[2] / size_[1]);
-    return corner_ + step_.cwiseProduct(Vector3d(u, w, v));
+    const Node column = n / size_[2];
+    const Eigen::Matrix<Node, 3, 1> at(column / size_[1], n % size_[2], column % size_[1]);
+    return corner_ + step_.cwiseProduct(at.cast<double>());
   }
 
   // Nodes near the surface count as on it.

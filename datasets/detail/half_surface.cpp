@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 #include <utility>
 
@@ -59,7 +60,7 @@ void flip_edges(HalfSurface& surface) {
       const std::int32_t right = surface.faces[other.face][other.corner];
       if (surface.in_plane(left) && surface.in_plane(right)) continue;
       if (edges.contains(edge_key(left, right))) continue;
-      if (angle_at(surface, sides[0]) + angle_at(surface, other) < M_PI + 1e-6) continue;
+      if (angle_at(surface, sides[0]) + angle_at(surface, other) < std::numbers::pi + 1e-6) continue;
       surface.faces[f] = {left, a, right};
       surface.faces[other.face] = {right, b, left};
       changed[f] = changed[other.face] = true;

@@ -61,5 +61,6 @@ void catch_interrupts();
 void add_spectrum(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);
+void add_dataset(CLI::App& timbre, Context& context);
 
 }  // namespace timbre::cli

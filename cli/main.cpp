@@ -36,6 +36,7 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   add_spectrum(app, context);
   add_match(app, context);
   add_symmetry(app, context);
+  add_dataset(app, context);
 }
 
 int run(int argc, char** argv) {

@@ -31,7 +31,7 @@ struct MirroredMesh {
 ///
 /// @param f     even in x, smooth, close to the signed distance near its zeros
 /// @param box   holds the surface
-/// @param cell  lattice spacing; edges come out at about 0.6 of it. Where the body is
+/// @param cell  lattice spacing; edges come out at about 3 / 4 of it. Where the body is
 ///              thinner than about 1.5 cells the surface may not be a manifold
 /// @see Labelle and Shewchuk 2007, section 3 (lattice, warping, cutting)
 [[nodiscard]] MirroredMesh make_isosurface(const ImplicitFunction& f,

@@ -15,6 +15,7 @@
 #include "timbre/cli/command.h"
 #include "timbre/datasets/analytic.h"
 #include "timbre/datasets/articulated.h"
+#include "timbre/datasets/random.h"
 
 namespace timbre::cli {
 namespace {

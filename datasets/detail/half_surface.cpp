@@ -60,7 +60,8 @@ void flip_edges(HalfSurface& surface) {
       const std::int32_t right = surface.faces[other.face][other.corner];
       if (surface.in_plane(left) && surface.in_plane(right)) continue;
       if (edges.contains(edge_key(left, right))) continue;
-      if (angle_at(surface, sides[0]) + angle_at(surface, other) < std::numbers::pi + 1e-6) continue;
+      if (angle_at(surface, sides[0]) + angle_at(surface, other) < std::numbers::pi + 1e-6)
+        continue;
       surface.faces[f] = {left, a, right};
       surface.faces[other.face] = {right, b, left};
       changed[f] = changed[other.face] = true;
@@ -68,25 +69,23 @@ void flip_edges(HalfSurface& surface) {
   }
 }
 
-// The mean of the neighbours in the whole surface: a point of the plane has each
-// neighbour off the plane twice.
+// The mean of the neighbours in the whole surface. Summed over faces each neighbour counts
+// twice, but once along the border: the other face of such an edge is the mirror image.
 std::vector<Vector3d> neighbour_means(const HalfSurface& surface) {
   std::vector<Vector3d> sum(surface.points.size(), Vector3d::Zero());
-  std::vector<double> weight(surface.points.size(), 0.0);
-  const auto add = [&](std::int32_t to, std::int32_t from) {
-    const double w = surface.in_plane(to) && !surface.in_plane(from) ? 2.0 : 1.0;
-    sum[static_cast<std::size_t>(to)] += w * surface.points[static_cast<std::size_t>(from)];
-    weight[static_cast<std::size_t>(to)] += w;
-  };
-  for (const auto& [key, sides] : edges_of(surface.faces)) {
-    const auto a = static_cast<std::int32_t>(key >> 32);
-    const auto b = static_cast<std::int32_t>(key & 0xffffffffU);
-    add(a, b);
-    add(b, a);
+  std::vector<double> count(surface.points.size(), 0.0);
+  for (const Triangle& face : surface.faces) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto to = static_cast<std::size_t>(face[c]);
+      for (const std::int32_t from : {face[(c + 1) % 3], face[(c + 2) % 3]}) {
+        sum[to] += surface.points[static_cast<std::size_t>(from)];
+        count[to] += 1.0;
+      }
+    }
   }
   for (std::size_t v = 0; v < sum.size(); ++v) {
+    sum[v] /= count[v];
     if (surface.in_plane(static_cast<std::int32_t>(v))) sum[v].x() = 0.0;
-    sum[v] /= weight[v];
   }
   return sum;
 }

@@ -60,14 +60,15 @@ void catch_interrupts();
 [[nodiscard]] std::string utf8_or_replaced(std::string_view text);
 
 // One function per command, in commands/: adds the subcommand and its callback.
+void add_dataset(CLI::App& timbre, Context& context);
 void add_db(CLI::App& timbre, Context& context);
 void add_embed(CLI::App& timbre, Context& context);
 void add_eval(CLI::App& timbre, Context& context);
+void add_info(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
 void add_query(CLI::App& timbre, Context& context);
 void add_signature(CLI::App& timbre, Context& context);
 void add_spectrum(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);
-void add_info(CLI::App& app, Context& context);
 
 }  // namespace timbre::cli

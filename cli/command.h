@@ -68,5 +68,6 @@ void add_query(CLI::App& timbre, Context& context);
 void add_signature(CLI::App& timbre, Context& context);
 void add_spectrum(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);
+void add_info(CLI::App& app, Context& context);
 
 }  // namespace timbre::cli

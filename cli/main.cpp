@@ -1,8 +1,12 @@
 #include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
 #include <new>
+#include <numeric>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/cli/command.h"
@@ -33,14 +37,45 @@ int complain(const std::string& line, int code) {
 
 void add_commands(CLI::App& app, timbre::cli::Context& context) {
   using namespace timbre::cli;  // NOLINT(google-build-using-namespace): the names of one room
-  add_db(app, context);
-  add_embed(app, context);
-  add_eval(app, context);
-  add_match(app, context);
-  add_query(app, context);
-  add_signature(app, context);
+  add_info(app, context);
   add_spectrum(app, context);
+  add_signature(app, context);
+  add_embed(app, context);
+  add_db(app, context);
+  add_query(app, context);
+  add_match(app, context);
   add_symmetry(app, context);
+  add_eval(app, context);
+}
+
+// Edits (insert, delete, replace, one each) from one word to another.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0U);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0U : 1U);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replace}));
+    }
+  }
+  return row.back();
+}
+
+// A first word that is no command gets the nearest one's name.
+void check_command_name(const CLI::App& app, int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.empty() || word[0] == '-') return;
+  std::string nearest;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == word) return;
+    if (nearest.empty() ||
+        edit_distance(word, command->get_name()) < edit_distance(word, nearest)) {
+      nearest = command->get_name();
+    }
+  }
+  throw Error(ErrorKind::bad_request, "", word,
+              "is no command; did you mean '" + nearest + "'? see timbre --help");
 }
 
 int run(int argc, char** argv) {
@@ -53,6 +88,7 @@ int run(int argc, char** argv) {
       "Each command explains itself and gives an example: timbre COMMAND --help\n"
       "Start with: timbre info MESH");
   add_commands(app, context);
+  check_command_name(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {

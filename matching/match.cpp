@@ -16,11 +16,15 @@ using Eigen::Index;
 
 constexpr std::array kSampleSizes = {20, 24, 28, 32, 36, 40, 45, 50};
 constexpr std::array kVertexSizes = {50, 60, 72, 86, 100};
-constexpr std::array kDenseSizes = {100, 120, 150, 200};
+// Space counts from the start, at small sizes, where it still moves the map.
+constexpr std::array kDenseSteps = {DenseStep{100, 2.0, 0.005, 40}, DenseStep{120, 2.0, 0.005, 60},
+                                    DenseStep{150, 2.0, 0.005, 100},
+                                    DenseStep{200, 2.0, 0.005, 150}};
 constexpr int kVertexSamples = 800;
 constexpr double kDistinct = 0.06;     // mean distance of maps that are different answers
 constexpr double kCloseEnergy = 0.25;  // closer than this: compare after dense refinement
-constexpr double kDoubtEnergy = 0.1;   // closer than this: say so
+constexpr double kMirrorPenalty = 2.0;
+constexpr double kDoubtEnergy = 0.1;  // closer than this: say so
 
 struct Rival {
   Candidate candidate;
@@ -29,7 +33,7 @@ struct Rival {
   double sample_energy = 0.0;
   FunctionalMaps functional;
   double energy = 0.0;
-  std::optional<DenseMaps> dense;
+  DenseMaps dense;  ///< of those that were refined
 };
 
 class Stopwatch {
@@ -140,7 +144,7 @@ class Matcher {
                      4.0 * rival.candidate.score();
     });
     std::stable_sort(rivals.begin(), rivals.end(), [&](const Rival& x, const Rival& y) {
-      return std::pair(misoriented(x), x.energy) < std::pair(misoriented(y), y.energy);
+      return ranking_energy(x) < ranking_energy(y);
     });
   }
 
@@ -148,8 +152,15 @@ class Matcher {
     return oriented_ && rival.candidate.orientation < 0;
   }
 
+  // Between poses of a left-right symmetric shape a mirrored map has about the energy of
+  // the right one. Only a shape that is the mirror image of the other has far less.
+  [[nodiscard]] double ranking_energy(const Rival& rival) const {
+    return rival.energy + (misoriented(rival) ? kMirrorPenalty : 0.0);
+  }
+
   void refine(Rival& rival) {
-    rival.dense = zoom_out_densely(a_, b_, rival.functional, kDenseSizes, options_.threads);
+    rival.dense = refine_densely(a_, b_, rival.functional, kDenseSteps, rival.candidate.orientation,
+                                 options_.threads);
   }
 
   // A close second is refined too. The better dense map takes the better energy, so that
@@ -157,11 +168,11 @@ class Matcher {
   void refine_best(std::vector<Rival>& rivals) {
     if (rivals.empty()) return;
     refine(rivals[0]);
-    if (rivals.size() < 2 || misoriented(rivals[1])) return;
+    if (rivals.size() < 2 || misoriented(rivals[1]) != misoriented(rivals[0])) return;
     if (rivals[1].energy - rivals[0].energy > kCloseEnergy) return;
     refine(rivals[1]);
-    const double first = dense_score(a_, b_, *rivals[0].dense);
-    const double second = dense_score(a_, b_, *rivals[1].dense);
+    const double first = dense_score(a_, b_, rivals[0].dense, rivals[0].candidate.orientation);
+    const double second = dense_score(a_, b_, rivals[1].dense, rivals[1].candidate.orientation);
     const double low = std::min(rivals[0].energy, rivals[1].energy);
     if (second < first) std::swap(rivals[0], rivals[1]);
     rivals[0].energy = low;
@@ -185,16 +196,15 @@ class Matcher {
                                                                : MapOrientation::mirrored;
       solution.energies = rival.energies;
       solution.coverage = rival.energies.coverage;
-      // A mirrored rival is excluded by orientation, not by its energy.
       solution.confidence =
-          misoriented(rival) ? 0.0 : std::exp((rivals[0].energy - rival.energy) / kDoubtEnergy);
+          std::exp((ranking_energy(rivals[0]) - ranking_energy(rival)) / kDoubtEnergy);
       total += solution.confidence;
       solution.functional =
-          rival.dense ? std::move(rival.dense->functional) : std::move(rival.functional);
+          rival.dense.points.ab.empty() ? rival.functional : rival.dense.functional;
       result.solutions.push_back(std::move(solution));
     }
     for (MatchSolution& solution : result.solutions) solution.confidence /= total;
-    const PointMaps& points = rivals[0].dense->points;
+    const PointMaps& points = rivals[0].dense.points;
     result.solutions[0].coverage =
         0.5 * (covered_area(b_, points.ab) + covered_area(a_, points.ba));
     result.switches = find_switches(result.solutions[0].functional.ab, 20);
@@ -220,8 +230,7 @@ class Matcher {
       result.verdict = Verdict::ambiguous;
       result.reason =
           "a shape is open, non-manifold or one-sided: left and right cannot be told apart";
-    } else if (result.solutions.size() > 1 &&
-               result.solutions[1].orientation == MapOrientation::direct &&
+    } else if (result.solutions.size() > 1 && result.solutions[1].orientation == best.orientation &&
                result.solutions[1].energy - best.energy < kDoubtEnergy) {
       result.verdict = Verdict::ambiguous;
       result.reason = "another map is nearly as good";

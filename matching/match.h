@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,8 +60,8 @@ struct MatchOptions {
 /// Every sign and order of the low eigenfunctions is a hypothesis (`search_candidates`),
 /// in both orientations; the candidates are refined on samples and compared by several
 /// energies, the best distinct ones again on all vertices, close rivals once more after
-/// dense refinement. Where both shapes are closed the answer keeps orientation, and the
-/// best mirrored map stands among the solutions.
+/// dense refinement. Where both shapes are closed the answer keeps orientation, unless a
+/// mirrored map is better by far; the best mirrored map stands among the solutions.
 ///
 /// Vertices outside the largest component, or in no triangle, are unmatched (-1).
 [[nodiscard]] MatchResult match(const MatchSurface& A, const MatchSurface& B,

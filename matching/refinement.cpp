@@ -2,10 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
 #include "timbre/analysis/core/threads.h"
+#include "timbre/matching/deformation.h"
 
 namespace timbre {
 namespace {
@@ -54,6 +57,41 @@ void relative_distances(const RowMatrixXf& X, Index first, Index rows, const Row
   block.rowwise() += norms;
 }
 
+std::span<const std::int32_t> neighbours(const GeodesicGraph& graph, Index v) {
+  const auto begin = static_cast<std::size_t>(graph.start[static_cast<std::size_t>(v)]);
+  const auto end = static_cast<std::size_t>(graph.start[static_cast<std::size_t>(v) + 1]);
+  return std::span(graph.neighbour).subspan(begin, end - begin);
+}
+
+// Ascending, each once.
+void collect_around(const GeodesicGraph& x_graph, const GeodesicGraph& y_graph, const PointMap& now,
+                    Index x, std::vector<std::int32_t>& around) {
+  around.clear();
+  const auto add = [&](Index v) {
+    const std::int32_t image = now[static_cast<std::size_t>(v)];
+    around.push_back(image);
+    const auto ring = neighbours(y_graph, image);
+    around.insert(around.end(), ring.begin(), ring.end());
+  };
+  add(x);
+  for (const std::int32_t v : neighbours(x_graph, x)) add(v);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+}
+
+std::int32_t nearest_among(const RowMatrixXf& X, Index x, const RowMatrixXf& Y,
+                           const RowVectorXf& norms, const std::vector<std::int32_t>& among) {
+  std::int32_t best = among.front();
+  float least = std::numeric_limits<float>::infinity();
+  for (const std::int32_t y : among) {
+    const float distance = norms[y] - 2.0F * X.row(x).dot(Y.row(y));
+    if (distance >= least) continue;
+    least = distance;
+    best = y;
+  }
+  return best;
+}
+
 int capped(int size, const MatchSurface& A, const MatchSurface& B) {
   return static_cast<int>(std::min<Index>(
       {size, A.vectors.cols(), B.vectors.cols(), A.distances.rows() / 2, B.distances.rows() / 2}));
@@ -70,6 +108,28 @@ std::vector<std::int32_t> first_samples(const MatchSurface& s, Index count) {
 
 RowMatrixXf rows_of(const RowMatrixXf& X, const std::vector<std::int32_t>& rows) {
   return X(rows, Eigen::all);
+}
+
+// Positions and normals of both shapes in both poses, twelve more columns. The squared
+// metric of the spectral part is half the sum of its eigenvalues, so that sum is the
+// unit of the weights.
+void append_poses(const MatchSurface& A, const MatchSurface& B, const PointMaps& points,
+                  const DenseStep& step, Index k, int orientation, JointEmbedding& joint) {
+  const PosedSurface a = pose_as(A, B, points.ab, step.pose_size, orientation);
+  const PosedSurface b = pose_as(B, A, points.ba, step.pose_size, orientation);
+  const double metric = 0.5 * (A.values.head(k).sum() + B.values.head(k).sum());
+  const double s = std::sqrt(step.positions * metric);
+  const double g = std::sqrt(step.normals * metric);
+  const auto append = [](RowMatrixXf& rows, std::initializer_list<Points> parts) {
+    Index at = rows.cols();
+    rows.conservativeResize(Eigen::NoChange, at + 3 * static_cast<Index>(parts.size()));
+    for (const Points& part : parts) {
+      rows.middleCols(at, 3) = part.cast<float>();
+      at += 3;
+    }
+  };
+  append(joint.a, {s * a.points, g * a.normals, s * A.points, g * A.normals});
+  append(joint.b, {s * B.points, g * B.normals, s * b.points, g * b.normals});
 }
 
 }  // namespace
@@ -136,6 +196,29 @@ PointMaps nearest_rows_both_ways(const RowMatrixXf& X, const RowMatrixXf& Y, int
   return maps;
 }
 
+PointMap nearest_rows_nearby(const RowMatrixXf& X, const GeodesicGraph& x_graph,
+                             const RowMatrixXf& Y, const GeodesicGraph& y_graph, PointMap start,
+                             int sweeps, int threads) {
+  const RowVectorXf norms = squared_norms(Y);
+  PointMap now = std::move(start);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    PointMap next(now.size());
+    parallel_for((X.rows() + kBlock - 1) / kBlock, threads, [&](std::int64_t block) {
+      std::vector<std::int32_t> around;
+      const Index end = std::min(X.rows(), (block + 1) * kBlock);
+      for (Index i = block * kBlock; i < end; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        collect_around(x_graph, y_graph, now, i, around);
+        next[at] = nearest_among(X, i, Y, norms, around);
+      }
+    });
+    const bool still = next == now;
+    now = std::move(next);
+    if (still) break;
+  }
+  return now;
+}
+
 MatrixXd fit_functional_map(const Ref<const MatrixXd>& phi, const Ref<const VectorXd>& weight,
                             const Ref<const MatrixXd>& F) {
   const MatrixXd weighted = weight.asDiagonal() * phi;
@@ -189,24 +272,31 @@ FunctionalMaps zoom_out_to_vertices(const MatchSurface& A, const MatchSurface& B
   return maps;
 }
 
-DenseMaps zoom_out_densely(const MatchSurface& A, const MatchSurface& B, FunctionalMaps maps,
-                           std::span<const int> sizes, int threads) {
+DenseMaps refine_densely(const MatchSurface& A, const MatchSurface& B, FunctionalMaps maps,
+                         std::span<const DenseStep> steps, int orientation, int threads) {
   DenseMaps result{std::move(maps), {}};
-  const auto update_points = [&] {
+  const auto embedding = [&] {
     const Index k = result.functional.ab.rows();
-    const JointEmbedding joint =
-        joint_embedding(A.vectors.leftCols(k), B.vectors.leftCols(k), result.functional);
-    result.points = nearest_rows_both_ways(joint.a, joint.b, threads);
+    return joint_embedding(A.vectors.leftCols(k), B.vectors.leftCols(k), result.functional);
   };
-  update_points();
-  for (const int size : sizes) {
-    const Index k = capped_by_spectrum(size, A, B);
+  {
+    const JointEmbedding joint = embedding();
+    result.points = nearest_rows_both_ways(joint.a, joint.b, threads);
+  }
+  for (const DenseStep& step : steps) {
+    const Index k = capped_by_spectrum(step.size, A, B);
     const auto columns = Eigen::seqN(0, k);
     const MatrixXd weighted_a = A.mass.asDiagonal() * A.vectors.leftCols(k);
     const MatrixXd weighted_b = B.mass.asDiagonal() * B.vectors.leftCols(k);
     result.functional.ab = product_at_b(weighted_a, B.vectors(result.points.ab, columns));
     result.functional.ba = product_at_b(weighted_b, A.vectors(result.points.ba, columns));
-    update_points();
+    JointEmbedding joint = embedding();
+    if (step.positions > 0.0) append_poses(A, B, result.points, step, k, orientation, joint);
+    constexpr int kSweeps = 4;
+    result.points.ab = nearest_rows_nearby(joint.a, A.graph, joint.b, B.graph,
+                                           std::move(result.points.ab), kSweeps, threads);
+    result.points.ba = nearest_rows_nearby(joint.b, B.graph, joint.a, A.graph,
+                                           std::move(result.points.ba), kSweeps, threads);
   }
   return result;
 }

@@ -40,6 +40,14 @@ struct JointEmbedding {
 [[nodiscard]] PointMaps nearest_rows_both_ways(const RowMatrixXf& X, const RowMatrixXf& Y,
                                                int threads);
 
+/// The nearest row of Y among those around the present images: of a row x, the images of
+/// x and its neighbours, and their neighbours on the target. Sweeps until nothing moves,
+/// at most `sweeps` times. Finds what an exact search finds where a map is nearly right
+/// already, at a cost that is linear in the number of rows.
+[[nodiscard]] PointMap nearest_rows_nearby(const RowMatrixXf& X, const GeodesicGraph& x_graph,
+                                           const RowMatrixXf& Y, const GeodesicGraph& y_graph,
+                                           PointMap start, int sweeps, int threads);
+
 /// C with `Phi C ~ F` in the weighted least-squares sense; a little regularised.
 [[nodiscard]] Eigen::MatrixXd fit_functional_map(const Eigen::Ref<const Eigen::MatrixXd>& phi,
                                                  const Eigen::Ref<const Eigen::VectorXd>& weight,
@@ -66,9 +74,22 @@ struct DenseMaps {
   PointMaps points;  ///< between rows of the surfaces
 };
 
-/// The same with all vertices on both sides.
-[[nodiscard]] DenseMaps zoom_out_densely(const MatchSurface& A, const MatchSurface& B,
-                                         FunctionalMaps maps, std::span<const int> sizes,
-                                         int threads);
+/// One step of dense refinement: its spectral size, and how much each shape posed as the
+/// other counts beside the spectral embedding.
+struct DenseStep {
+  int size = 100;
+  double positions = 2.0;  ///< 1: as much as the spectral part; 0: not at all
+  double normals = 0.005;  ///< the same; large values tear the map
+  int pose_size = 40;      ///< eigenfunctions of the smooth part of the pose
+};
+
+/// All vertices on both sides: at each step functional maps from the point maps, each shape
+/// posed as the other, and new point maps from nearness in spectrum and in space together.
+/// Space decides where the spectrum slides, on torsos and thighs.
+/// @param orientation  +1 direct, -1 mirrored
+/// @see Eisenberger et al. 2020 (Smooth Shells) for the idea of both at once
+[[nodiscard]] DenseMaps refine_densely(const MatchSurface& A, const MatchSurface& B,
+                                       FunctionalMaps maps, std::span<const DenseStep> steps,
+                                       int orientation, int threads);
 
 }  // namespace timbre

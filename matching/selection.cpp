@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "timbre/matching/candidates.h"
+#include "timbre/matching/deformation.h"
 
 namespace timbre {
 namespace {
@@ -147,11 +148,14 @@ double commutation_error(const MatchSurface& A, const MatchSurface& B, const Mat
   return std::sqrt(sum) / A.values.head(k).norm();
 }
 
-double dense_score(const MatchSurface& A, const MatchSurface& B, const DenseMaps& maps) {
+double dense_score(const MatchSurface& A, const MatchSurface& B, const DenseMaps& maps,
+                   int orientation) {
+  constexpr Index kPoseSize = 150;
   const Index k = maps.functional.ab.rows();
   return commutation_error(A, B, maps.functional.ab, k) +
          10.0 * round_trip_in_space(A, maps.points) -
-         0.5 * (covered_area(A, maps.points.ba) + covered_area(B, maps.points.ab));
+         0.5 * (covered_area(A, maps.points.ba) + covered_area(B, maps.points.ab)) +
+         10.0 * pose_residual(A, B, maps.points.ab, kPoseSize, orientation);
 }
 
 double covered_area(const MatchSurface& B, const PointMap& ab) {

@@ -38,7 +38,7 @@ struct MapEnergies {
 
 /// Score of dense maps; small is good. Separates what samples could not.
 [[nodiscard]] double dense_score(const MatchSurface& A, const MatchSurface& B,
-                                 const DenseMaps& maps);
+                                 const DenseMaps& maps, int orientation);
 
 /// Share of B's area that the map hits, by vertex masses.
 [[nodiscard]] double covered_area(const MatchSurface& B, const PointMap& ab);

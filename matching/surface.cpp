@@ -3,13 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"
-#include "timbre/analysis/geodesic/graph.h"
 #include "timbre/analysis/operators/operator.h"
 
 namespace timbre {
@@ -21,30 +20,33 @@ using Eigen::VectorXd;
 
 constexpr Index kLeastVertices = 30;
 
-// Rows of the largest component, as a mesh of its own at unit area.
-TriangleMesh extract_component(const TriangleMesh& mesh, const Operator& op,
-                               MatchSurface& surface) {
+struct Component {
+  TriangleMesh mesh;
+  std::vector<std::int32_t> vertex;  ///< file index of each row
+  double share = 1.0;                ///< of the whole area
+};
+
+Component largest_component(const TriangleMesh& mesh, const Operator& op) {
+  Component part;
   Index largest = 0;
-  const double area = op.component_area.maxCoeff(&largest);
+  part.share = op.component_area.maxCoeff(&largest) / op.area;
   std::vector<std::int32_t> row(op.component.size(), -1);
   for (std::size_t v = 0; v < op.component.size(); ++v) {
     if (op.component[v] != largest) continue;
-    row[v] = static_cast<std::int32_t>(surface.vertex.size());
-    surface.vertex.push_back(static_cast<std::int32_t>(v));
+    row[v] = static_cast<std::int32_t>(part.vertex.size());
+    part.vertex.push_back(static_cast<std::int32_t>(v));
   }
-  surface.file_vertices = mesh.vertices.rows();
-  surface.component_share = area / op.area;
-
-  TriangleMesh part;
-  part.vertices = mesh.vertices(surface.vertex, Eigen::all) / std::sqrt(area);
+  part.mesh.vertices = mesh.vertices(part.vertex, Eigen::all);
   std::vector<Index> kept;
   for (Index f = 0; f < mesh.faces.rows(); ++f) {
     const Eigen::RowVector3i c = mesh.faces.row(f);
     const bool repeated = c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
     if (!repeated && row[static_cast<std::size_t>(c[0])] >= 0) kept.push_back(f);
   }
-  part.faces = mesh.faces(kept, Eigen::all);
-  for (std::int32_t& corner : part.faces.reshaped()) corner = row[static_cast<std::size_t>(corner)];
+  part.mesh.faces = mesh.faces(kept, Eigen::all);
+  for (std::int32_t& corner : part.mesh.faces.reshaped()) {
+    corner = row[static_cast<std::size_t>(corner)];
+  }
   return part;
 }
 
@@ -114,12 +116,11 @@ void compute_tensors(MatchSurface& s, Index k) {
 
 // Geodesic farthest points, then Euclidean ones, which cost less and fill the gaps.
 void choose_samples(MatchSurface& s, const SurfaceOptions& options) {
-  const GeodesicGraph graph = make_geodesic_graph({s.points, s.faces});
   Index first = 0;
   s.points.rowwise().squaredNorm().maxCoeff(&first);
   s.samples =
-      geodesic_farthest_points(graph, options.geodesic_samples, static_cast<std::int32_t>(first));
-  s.distances = graph_distance_rows(graph, s.samples, options.threads);
+      geodesic_farthest_points(s.graph, options.geodesic_samples, static_cast<std::int32_t>(first));
+  s.distances = graph_distance_rows(s.graph, s.samples, options.threads);
 
   VectorXd nearest = s.distances.colwise().minCoeff().transpose().cast<double>();
   const Index wanted = std::min<Index>(options.samples, s.points.rows());
@@ -140,36 +141,65 @@ void choose_samples(MatchSurface& s, const SurfaceOptions& options) {
   }
 }
 
+MatchSurface prepared(const TriangleMesh& mesh, const Operator& op, Spectrum spectrum,
+                      const SurfaceOptions& options) {
+  MatchSurface s;
+  OrientedFaces oriented = orient_outward(mesh);
+  s.faces = std::move(oriented.faces);
+  s.orientation = oriented.orientation;
+  spectrum = at_unit_area(std::move(spectrum), op.area);
+  s.values = std::move(spectrum.values);
+  s.vectors = std::move(spectrum.vectors);
+  s.mass = op.lumped_mass / op.area;
+  s.points = mesh.vertices / std::sqrt(op.area);
+  s.points.rowwise() -= (s.mass.transpose() * s.points).eval();
+  s.normals = vertex_normals(s.points, s.faces);
+  s.graph = make_geodesic_graph({s.points, s.faces});
+  s.curvature = curvature_coefficients(s, op.stiffness);
+  compute_tensors(s, std::min<Index>(options.tensor_size, s.values.size() - 1));
+  choose_samples(s, options);
+  return s;
+}
+
 }  // namespace
 
 MatchSurface prepare_surface(const TriangleMesh& mesh, const SurfaceOptions& options) {
   const SingleThreadedBlas blas;
-  MatchSurface s;
-  TriangleMesh part = extract_component(mesh, compute_operator(mesh), s);
-  const Index n = part.vertices.rows();
+  const Component part = largest_component(mesh, compute_operator(mesh));
+  const Index n = part.mesh.vertices.rows();
   if (n < kLeastVertices) {
     throw Error(ErrorKind::bad_input, "", "mesh",
                 "its largest component has " + std::to_string(n) + " vertices; matching needs " +
                     std::to_string(kLeastVertices));
   }
-  OrientedFaces oriented = orient_outward(part);
-  part.faces = std::move(oriented.faces);
-  s.orientation = oriented.orientation;
+  const Operator op = compute_operator(part.mesh);
+  MatchSurface s = prepared(
+      part.mesh, op,
+      compute_spectrum(op, {.count = options.eigenpairs, .progress = options.progress}), options);
+  s.vertex = part.vertex;
+  s.file_vertices = mesh.vertices.rows();
+  s.component_share = part.share;
+  return s;
+}
 
-  const Operator op = compute_operator(part);
-  Spectrum spectrum =
-      compute_spectrum(op, {.count = options.eigenpairs, .progress = options.progress});
-  spectrum = at_unit_area(std::move(spectrum), op.area);
-  s.values = std::move(spectrum.values);
-  s.vectors = std::move(spectrum.vectors);
-  s.mass = op.lumped_mass / op.area;
-  s.points = part.vertices / std::sqrt(op.area);
-  s.points.rowwise() -= (s.mass.transpose() * s.points).eval();
-  s.faces = part.faces;
-  s.normals = vertex_normals(s.points, s.faces);
-  s.curvature = curvature_coefficients(s, op.stiffness);
-  compute_tensors(s, std::min<Index>(options.tensor_size, s.values.size() - 1));
-  choose_samples(s, options);
+MatchSurface prepare_surface(const TriangleMesh& mesh, Spectrum spectrum,
+                             const SurfaceOptions& options) {
+  const SingleThreadedBlas blas;
+  const Operator op = compute_operator(mesh);
+  const Index n = mesh.vertices.rows();
+  if (op.component_area.size() != 1 || op.lumped_mass.minCoeff() <= 0.0) {
+    throw Error(ErrorKind::bad_request, "", "mesh",
+                "has several components or unused vertices; they cannot share a spectrum here");
+  }
+  if (spectrum.vectors.rows() != n || n < kLeastVertices || spectrum.values.size() < 2) {
+    throw Error(ErrorKind::bad_request, "", "spectrum",
+                "is of " + std::to_string(spectrum.vectors.rows()) + " vertices, the mesh has " +
+                    std::to_string(n) + "; matching needs " + std::to_string(kLeastVertices));
+  }
+  MatchSurface s = prepared(mesh, op, std::move(spectrum), options);
+  s.vertex.resize(static_cast<std::size_t>(n));
+  std::iota(s.vertex.begin(), s.vertex.end(), 0);
+  s.file_vertices = n;
   return s;
 }
 

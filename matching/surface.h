@@ -6,6 +6,7 @@
 
 #include "timbre/analysis/core/matrix_product.h"
 #include "timbre/analysis/core/progress.h"
+#include "timbre/analysis/geodesic/graph.h"
 #include "timbre/analysis/mesh/orientation.h"
 #include "timbre/analysis/mesh/triangle_mesh.h"
 #include "timbre/analysis/spectrum/spectrum.h"
@@ -27,6 +28,7 @@ struct MatchSurface {
   Faces faces;           ///< rows of `points`
   Points normals;        ///< n x 3, unit, area-weighted
   Eigen::VectorXd mass;  ///< n, lumped, sums to 1
+  GeodesicGraph graph;   ///< edges and unfolded diagonals
   Orientation orientation = Orientation::unknown;
 
   Eigen::VectorXd values;   ///< k eigenvalues, values(0) = 0
@@ -59,6 +61,15 @@ struct SurfaceOptions {
 /// @see Ren et al. 2018 (orientation by dphi_i ^ dphi_j); Huang and Ovsjanikov 2017,
 ///      Nogneng and Ovsjanikov 2017 (maps preserve products)
 [[nodiscard]] MatchSurface prepare_surface(const TriangleMesh& mesh,
+                                           const SurfaceOptions& options = {});
+
+/// The same with eigenpairs that are known already.
+///
+/// @param mesh      one component, every vertex in use
+/// @param spectrum  of its cotangent Laplacian with lumped mass, at the mesh's scale; signs
+///                  and rotations within near-equal eigenvalues are free
+/// @throws Error  bad_request if mesh and spectrum do not fit together
+[[nodiscard]] MatchSurface prepare_surface(const TriangleMesh& mesh, Spectrum spectrum,
                                            const SurfaceOptions& options = {});
 
 }  // namespace timbre

@@ -12,14 +12,15 @@ constexpr double kPart = 0.3;
 // Rows and columns joined to `row` by entries above kPart.
 Switch connected_block(const Eigen::MatrixXd& C, int count, int row, std::vector<bool>& seen) {
   Switch block{SwitchKind::mixed, {}, {}};
-  std::vector<bool> seen_column(static_cast<std::size_t>(count), false);
+  const auto columns = static_cast<int>(C.cols());
+  std::vector<bool> seen_column(static_cast<std::size_t>(columns), false);
   std::vector<int> rows = {row};
   seen[static_cast<std::size_t>(row)] = true;
   while (!rows.empty()) {
     const int i = rows.back();
     rows.pop_back();
     block.source.push_back(i);
-    for (int j = 0; j < count; ++j) {
+    for (int j = 0; j < columns; ++j) {
       if (std::abs(C(i, j)) <= kPart || seen_column[static_cast<std::size_t>(j)]) continue;
       seen_column[static_cast<std::size_t>(j)] = true;
       block.target.push_back(j);
@@ -38,16 +39,15 @@ Switch connected_block(const Eigen::MatrixXd& C, int count, int row, std::vector
 }  // namespace
 
 std::vector<Switch> find_switches(const Eigen::MatrixXd& C, int count) {
-  count = static_cast<int>(std::min<Eigen::Index>({count, C.rows(), C.cols()}));
+  count = static_cast<int>(std::min<Eigen::Index>(count, C.rows()));
   std::vector<bool> seen(static_cast<std::size_t>(count), false);
   std::vector<Switch> switches;
   for (int i = 0; i < count; ++i) {
     if (seen[static_cast<std::size_t>(i)]) continue;
     Eigen::Index partner = 0;
-    const double size = C.row(i).head(count).cwiseAbs().maxCoeff(&partner);
+    const double size = C.row(i).cwiseAbs().maxCoeff(&partner);
     if (size <= kPair) {
-      Switch block = connected_block(C, count, i, seen);
-      switches.push_back(std::move(block));
+      switches.push_back(connected_block(C, count, i, seen));
       continue;
     }
     seen[static_cast<std::size_t>(i)] = true;

@@ -20,9 +20,9 @@ struct Switch {
   std::vector<int> target;
 };
 
-/// Reads the first `count` functions off a functional map: an entry above 0.7 in size is
-/// a pair, connected entries above 0.3 are a mixture. Functions that simply correspond
-/// are not listed.
+/// Reads the first `count` functions of the source off a functional map: an entry above 0.7
+/// in size is a pair, connected entries above 0.3 are a mixture. Functions that simply
+/// correspond are not listed; a mixture without target has no counterpart.
 /// @param C  F(B) -> F(A): row i tells what function i of the source is made of
 /// @see Levy and Zhang 2009, figure 22
 [[nodiscard]] std::vector<Switch> find_switches(const Eigen::MatrixXd& C, int count);

@@ -7,6 +7,7 @@
 
 #include "timbre/analysis/core/threads.h"
 #include "timbre/matching/candidates.h"
+#include "timbre/matching/deformation.h"
 
 namespace timbre {
 namespace {
@@ -119,10 +120,18 @@ PointMap twice(const PointMap& map) {
 }
 
 // Geodesic distances cannot tell a front-to-back map, which moves every point a little
-// and keeps distances on thin limbs; at high frequency it misses. That a reflection
-// exchanges limbs is a prior, and must stay a weak one.
+// and keeps distances on thin limbs. At high frequency it misses the eigenfunctions, and
+// a shape posed by it does not fit itself. That a reflection exchanges limbs is a prior,
+// and must stay a weak one.
 double energy_of(const MatchSurface& s, const Rival& rival) {
-  return commutation_error(s, s, rival.C, 100) - 0.2 * rival.displacement;
+  constexpr Index kSize = 100;
+  const PosedSurface posed = pose_as(s, s, rival.points, kSize, -1);
+  const Points image = s.points(rival.points, Eigen::all);
+  const Points normals = s.normals(rival.points, Eigen::all);
+  const double misfit = std::sqrt(s.mass.dot((posed.points - image).rowwise().squaredNorm()));
+  const double agreement = s.mass.dot(posed.normals.cwiseProduct(normals).rowwise().sum());
+  return commutation_error(s, s, rival.C, kSize) + 5.0 * misfit - 0.2 * rival.displacement -
+         0.1 * agreement;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace timbre {
 namespace {
@@ -47,6 +48,14 @@ bool is_tiny(std::string_view number) {
 std::string to_text(double value) {
   std::array<char, 32> buffer{};
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
+}
+
+std::string to_text(double value, int digits) {
+  if (std::abs(value) > 1e15) return to_text(value);
+  std::array<char, 64> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          std::chars_format::fixed, digits);
   return {buffer.data(), end};
 }
 

@@ -11,6 +11,9 @@ namespace timbre {
 /// The shortest decimal text that reads back as the same double; no locale.
 [[nodiscard]] std::string to_text(double value);
 
+/// With a fixed number of digits after the point, for people; no locale.
+[[nodiscard]] std::string to_text(double value, int digits);
+
 /// A whole token as a decimal number: `[+-]? digits [. digits] [e[+-]digits]`.
 /// Too small rounds to 0 or a subnormal; too large, hexadecimal, `nan`, `inf`
 /// and anything left over are no number.

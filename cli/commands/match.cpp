@@ -1,14 +1,10 @@
 #include "timbre/matching/match.h"
 
-#include <array>
-#include <charconv>
-#include <chrono>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include "timbre/analysis/core/array_file.h"
-#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/number_text.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
 
@@ -20,13 +16,6 @@ struct Arguments {
   int count = 200;
   bool strict = false;
 };
-
-std::string fixed(double value, int digits) {
-  std::array<char, 64> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                          std::chars_format::fixed, digits);
-  return {buffer.data(), end};
-}
 
 std::string list(const std::vector<int>& numbers) {
   std::string text;
@@ -44,14 +33,15 @@ std::string describe(const Switch& item) {
     case SwitchKind::mixed:
       break;
   }
+  if (item.target.empty()) return "eigenfunction " + list(item.source) + " has no counterpart";
   return "eigenfunctions " + list(item.source) + " correspond only together, to " +
          list(item.target) + " of the target";
 }
 
 std::string describe(const MatchSolution& solution) {
-  return std::string(to_word(solution.orientation)) + ", energy " + fixed(solution.energy, 2) +
-         ", coverage " + fixed(100.0 * solution.coverage, 0) + " %, confidence " +
-         fixed(100.0 * solution.confidence, 0) + " %\n";
+  return std::string(to_word(solution.orientation)) + ", energy " + to_text(solution.energy, 2) +
+         ", coverage " + to_text(100.0 * solution.coverage, 0) + " %, confidence " +
+         to_text(100.0 * solution.confidence, 0) + " %\n";
 }
 
 std::string to_prose(const Arguments& args, const MatchResult& result, const std::string& output) {
@@ -125,7 +115,7 @@ MatchSurface load_surface(const Context& context, const std::string& path, int c
   });
   if (surface.component_share < 0.999) {
     context.note(path + ": only the largest component, " +
-                 fixed(100.0 * surface.component_share, 1) + " % of the area, is matched");
+                 to_text(100.0 * surface.component_share, 1) + " % of the area, is matched");
   }
   return surface;
 }

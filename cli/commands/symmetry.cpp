@@ -22,9 +22,9 @@ std::string to_prose(const Arguments& args, const std::vector<Reflection>& found
   std::string text = args.mesh + ": " + std::to_string(found.size()) + " candidate" +
                      (found.size() == 1 ? "" : "s") + " for a reflection, best first\n";
   for (const Reflection& reflection : found) {
-    text += "  energy " + to_text(reflection.energy) + ", confidence " +
-            to_text(reflection.confidence) + ", mean displacement " +
-            to_text(reflection.displacement) + "\n";
+    text += "  energy " + to_text(reflection.energy, 3) + ", confidence " +
+            to_text(100.0 * reflection.confidence, 0) + " %" + ", mean displacement " +
+            to_text(reflection.displacement, 2) + "\n";
   }
   if (!output.empty()) text += "  wrote " + output + "\n";
   return text;

@@ -1,12 +1,12 @@
 #include "timbre/analysis/mesh/detail/assemble.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "timbre/analysis/mesh/detail/grouping.h"
+#include "timbre/analysis/mesh/detail/triangle.h"
 #include "timbre/analysis/mesh/detail/triangulate.h"
 
 namespace timbre::detail {
@@ -18,54 +18,28 @@ using Polygon = std::span<const std::int32_t>;
 
 // The polygons of three or more corners.
 struct Kept {
-  const PolygonMesh& mesh;
+  std::vector<Polygon> polygons;
   std::vector<std::int32_t> number;  // of each in the file
 
   [[nodiscard]] std::size_t size() const { return number.size(); }
-  [[nodiscard]] Polygon operator[](std::size_t i) const {
-    const auto n = static_cast<std::size_t>(number[i]);
-    const std::size_t begin = n == 0 ? 0 : mesh.ends[n - 1];
-    return Polygon(mesh.corners).subspan(begin, mesh.ends[n] - begin);
-  }
+  [[nodiscard]] Polygon operator[](std::size_t i) const { return polygons[i]; }
 };
 
 Kept keep(PolygonMesh& mesh) {
-  Kept kept{mesh, {}};
+  Kept kept;
+  kept.polygons.reserve(mesh.ends.size());
   kept.number.reserve(mesh.ends.size());
   std::size_t begin = 0;
   for (std::size_t i = 0; i < mesh.ends.size(); begin = mesh.ends[i++]) {
     const auto number = static_cast<std::int32_t>(i);
     if (mesh.ends[i] - begin >= 3) {
+      kept.polygons.push_back(Polygon(mesh.corners).subspan(begin, mesh.ends[i] - begin));
       kept.number.push_back(number);
     } else {
       mesh.findings.add(Finding::dropped_element, number);
     }
   }
   return kept;
-}
-
-double largest_coordinate(const std::vector<double>& coordinates) {
-  double largest = 0.0;
-  for (const double c : coordinates) largest = std::max(largest, std::abs(c));
-  return largest;
-}
-
-// Twice the area is at most 1e-15 of the longest edge squared. First all is divided by
-// `unit`, the largest coordinate of the mesh, and then by the longest side of the triangle's
-// box, so that neither 1e300 nor 1e-200 raises an alarm.
-bool has_no_area(const double* a, const double* b, const double* c, double unit) {
-  Eigen::Vector3d u;
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) {
-    u[k] = b[k] / unit - a[k] / unit;
-    v[k] = c[k] / unit - a[k] / unit;
-  }
-  const double size = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
-  if (size == 0.0) return true;
-  u /= size;
-  v /= size;
-  const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
-  return u.cross(v).norm() <= 1e-15 * longest;
 }
 
 bool repeats_a_corner(Polygon polygon, std::vector<std::int32_t>& scratch) {
@@ -79,7 +53,7 @@ bool repeats_a_corner(Polygon polygon, std::vector<std::int32_t>& scratch) {
 
 void find_degenerate_faces(const Kept& kept, PolygonMesh& mesh) {
   const double* const xyz = mesh.coordinates.data();
-  const double unit = largest_coordinate(mesh.coordinates);
+  const double per_unit = 1.0 / unit_of(mesh.coordinates);
   std::vector<std::int32_t> scratch;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const Polygon polygon = kept[i];
@@ -87,10 +61,17 @@ void find_degenerate_faces(const Kept& kept, PolygonMesh& mesh) {
       return xyz + 3 * static_cast<std::size_t>(polygon[corner]);
     };
     if (repeats_a_corner(polygon, scratch) ||
-        (polygon.size() == 3 && has_no_area(position(0), position(1), position(2), unit))) {
+        (polygon.size() == 3 && has_no_area(position(0), position(1), position(2), per_unit))) {
       mesh.findings.add(Finding::degenerate_face, kept.number[i]);
     }
   }
+}
+
+void sort(std::span<std::int32_t> corners) {
+  if (corners.size() > 3) return std::sort(corners.begin(), corners.end());
+  if (corners[0] > corners[1]) std::swap(corners[0], corners[1]);
+  if (corners[1] > corners[2]) std::swap(corners[1], corners[2]);
+  if (corners[0] > corners[1]) std::swap(corners[0], corners[1]);
 }
 
 void find_duplicate_faces(const Kept& kept, PolygonMesh& mesh) {
@@ -100,7 +81,7 @@ void find_duplicate_faces(const Kept& kept, PolygonMesh& mesh) {
     const auto begin = static_cast<std::size_t>(polygon.data() - mesh.corners.data());
     return std::span(sorted).subspan(begin, polygon.size());
   };
-  for (std::size_t i = 0; i < kept.size(); ++i) std::sort(key(i).begin(), key(i).end());
+  for (std::size_t i = 0; i < kept.size(); ++i) sort(key(i));
   const auto first = first_equal(
       kept.size(), static_cast<std::size_t>(mesh.vertex_count()),
       [&](std::size_t i) { return static_cast<std::size_t>(key(i)[0]); },

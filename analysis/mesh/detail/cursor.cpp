@@ -48,14 +48,10 @@ bool Cursor::at_continuation(std::size_t& next_line) const {
 }
 
 void Cursor::skip_blanks() {
-  for (std::size_t next_line = 0; left() > 0;) {
-    if (is_blank(now())) {
-      ++at_;
-    } else if (at_continuation(next_line)) {
-      at_ = next_line;
-    } else {
-      return;
-    }
+  for (std::size_t next_line = 0;;) {
+    while (left() > 0 && is_blank(now())) ++at_;
+    if (left() == 0 || !at_continuation(next_line)) return;
+    at_ = next_line;
   }
 }
 
@@ -66,15 +62,9 @@ void Cursor::skip_line_end() {
 std::string_view Cursor::word() {
   skip_blanks();
   last_ = at_;
-  std::size_t next_line = 0;
-  while (left() > 0) {
-    if (!ends_word_[static_cast<unsigned char>(now())]) {
-      ++at_;
-    } else if (now() == '\\' && !at_continuation(next_line)) {
-      ++at_;
-    } else {
-      break;
-    }
+  for (std::size_t next_line = 0;; ++at_) {
+    while (left() > 0 && !ends_word_[static_cast<unsigned char>(now())]) ++at_;
+    if (left() == 0 || now() != '\\' || at_continuation(next_line)) break;
   }
   return bytes_.substr(last_, at_ - last_);
 }
@@ -110,14 +100,14 @@ double Cursor::number() {
   const std::string_view text = word();
   if (const auto value = parse_double(text)) return *value;
   if (text.empty()) throw error("too few numbers");
-  throw error(quoted(text) + " is not a decimal number in the range of a double");
+  throw error(in_quotes(text) + " is not a decimal number in the range of a double");
 }
 
 std::int64_t Cursor::integer() {
   const std::string_view text = word();
   if (const auto value = parse_integer(text)) return *value;
   if (text.empty()) throw error("an integer is missing");
-  throw error(quoted(text) + " is not an integer of 64 bits");
+  throw error(in_quotes(text) + " is not an integer of 64 bits");
 }
 
 std::int32_t Cursor::vertex_index(std::int64_t count) { return checked_index(integer(), count); }
@@ -171,7 +161,7 @@ Error Cursor::truncated() const {
   return {ErrorKind::bad_input, "", "end of file", cause};
 }
 
-std::string quoted(std::string_view input) {
+std::string in_quotes(std::string_view input) {
   constexpr std::size_t kMost = 40;
   if (input.size() <= kMost) return "'" + std::string(input) + "'";
   std::size_t end = kMost;

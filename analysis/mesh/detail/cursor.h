@@ -101,7 +101,7 @@ class Cursor {
 };
 
 /// A piece of input for a message: at most 40 bytes, in quotes.
-[[nodiscard]] std::string quoted(std::string_view input);
+[[nodiscard]] std::string in_quotes(std::string_view input);
 
 template <typename T>
 T Cursor::value(std::endian order) {

@@ -16,13 +16,18 @@ namespace timbre::detail {
 template <typename BucketOf, typename Less>
 std::vector<std::int32_t> first_equal(std::size_t count, std::size_t buckets, BucketOf bucket_of,
                                       Less less) {
-  std::vector<std::size_t> start(buckets + 1, 0);
+  // First the sizes of the buckets, then where each begins, at last where each ends.
+  std::vector<std::size_t> end_of(buckets + 1, 0);
+  std::vector<std::uint32_t> bucket(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    bucket[i] = static_cast<std::uint32_t>(bucket_of(i));
+    ++end_of[bucket[i] + 1];
+  }
+  for (std::size_t b = 0; b < buckets; ++b) end_of[b + 1] += end_of[b];
   std::vector<std::int32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) ++start[bucket_of(i) + 1];
-  for (std::size_t b = 0; b < buckets; ++b) start[b + 1] += start[b];
-  std::vector<std::size_t> next(start.begin(), start.end() - 1);
-  for (std::size_t i = 0; i < count; ++i)
-    order[next[bucket_of(i)]++] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    order[end_of[bucket[i]]++] = static_cast<std::int32_t>(i);
+  }
 
   const auto before = [&](std::int32_t a, std::int32_t b) {
     const auto i = static_cast<std::size_t>(a);
@@ -32,9 +37,9 @@ std::vector<std::int32_t> first_equal(std::size_t count, std::size_t buckets, Bu
   };
   std::vector<std::int32_t> first(count);
   for (std::size_t b = 0; b < buckets; ++b) {
-    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(start[b]);
-    const auto end = order.begin() + static_cast<std::ptrdiff_t>(start[b + 1]);
-    std::sort(begin, end, before);
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(b == 0 ? 0 : end_of[b - 1]);
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(end_of[b]);
+    if (end - begin > 1) std::sort(begin, end, before);
     std::int32_t leader = 0;
     for (auto at = begin; at != end; ++at) {
       const bool is_new =

@@ -31,7 +31,7 @@ PlyType read_type(Cursor& cursor) {
   for (const auto& [name, type] : kTypes) {
     if (word == name) return type;
   }
-  throw cursor.error(quoted(word) +
+  throw cursor.error(in_quotes(word) +
                      " is no type of PLY; char, uchar, short, ushort, int, uint, "
                      "float and double are");
 }
@@ -44,17 +44,17 @@ std::string read_name(Cursor& cursor) {
 
 void require_line_end(Cursor& cursor) {
   const std::string_view word = cursor.word();
-  if (!word.empty()) throw cursor.error(quoted(word) + " is one word too many");
+  if (!word.empty()) throw cursor.error(in_quotes(word) + " is one word too many");
 }
 
 std::optional<std::endian> read_format(Cursor& cursor) {
   const std::string_view format = cursor.word();
   const std::string_view version = cursor.word();
-  if (version != "1.0") throw cursor.error("version " + quoted(version) + "; only 1.0 is known");
+  if (version != "1.0") throw cursor.error("version " + in_quotes(version) + "; only 1.0 is known");
   if (format == "ascii") return std::nullopt;
   if (format == "binary_little_endian") return std::endian::little;
   if (format == "binary_big_endian") return std::endian::big;
-  throw cursor.error("format " + quoted(format) +
+  throw cursor.error("format " + in_quotes(format) +
                      "; ascii, binary_little_endian and binary_big_endian are known");
 }
 
@@ -65,7 +65,7 @@ PlyElement read_element(Cursor& cursor, const std::vector<PlyElement>& before) {
   if (element.count < 0) throw cursor.error("a count below 0");
   for (const PlyElement& other : before) {
     if (other.name == element.name) {
-      throw cursor.error("element " + quoted(element.name) + " is declared twice");
+      throw cursor.error("element " + in_quotes(element.name) + " is declared twice");
     }
   }
   return element;
@@ -82,7 +82,7 @@ PlyProperty read_property(Cursor& cursor, const PlyElement& element) {
   property.type = read_type(cursor);
   property.name = read_name(cursor);
   if (element.find(property.name) >= 0) {
-    throw cursor.error("property " + quoted(property.name) + " is declared twice");
+    throw cursor.error("property " + in_quotes(property.name) + " is declared twice");
   }
   return property;
 }
@@ -127,8 +127,10 @@ void require_room(const PlyHeader& header, const Cursor& cursor) {
       least += header.binary ? size_of(property.length.value_or(property.type)) : 2;
     }
     if (element.count == 0) continue;
-    if (least == 0) throw header_error("rows of " + quoted(element.name) + " have no properties");
-    (void)cursor.checked_count(element.count, least, ("rows of " + quoted(element.name)).c_str());
+    if (least == 0)
+      throw header_error("rows of " + in_quotes(element.name) + " have no properties");
+    (void)cursor.checked_count(element.count, least,
+                               ("rows of " + in_quotes(element.name)).c_str());
   }
 }
 
@@ -174,7 +176,7 @@ PlyHeader read_ply_header(Cursor& cursor) {
       PlyElement& element = header.elements.back();
       element.properties.push_back(read_property(cursor, element));
     } else {
-      throw cursor.error(quoted(keyword) +
+      throw cursor.error(in_quotes(keyword) +
                          " is not expected here; format, element, property, "
                          "comment, obj_info and end_header make a header");
     }

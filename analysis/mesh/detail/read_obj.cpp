@@ -66,7 +66,7 @@ class ObjReader {
     const double z = cursor_.number();
     std::size_t values = 3;
     for (auto word = cursor_.word(); !word.empty(); word = cursor_.word()) {
-      if (!is_number_or_nan(word)) throw cursor_.error(quoted(word) + " is not a number");
+      if (!is_number_or_nan(word)) throw cursor_.error(in_quotes(word) + " is not a number");
       ++values;
     }
     if (values == 5 || values > 7) {
@@ -89,7 +89,7 @@ class ObjReader {
     const std::size_t slash = std::min(word.find('/'), word.size());
     const auto number = parse_integer(word.substr(0, slash));
     if (!number || !are_slots(word.substr(slash))) {
-      throw cursor_.error(quoted(word) + " is not v, v/t, v//n or v/t/n in integers of 64 bits");
+      throw cursor_.error(in_quotes(word) + " is not v, v/t, v//n or v/t/n in integers of 64 bits");
     }
     const std::int64_t index = *number > 0 ? *number - 1 : mesh_.vertex_count() + *number;
     constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();

@@ -69,11 +69,12 @@ Counts read_counts(Cursor& cursor, std::string_view glued) {
   } else if (const auto value = parse_integer(glued)) {
     vertices = *value;
   } else {
-    throw cursor.error(quoted(glued) + " is not an integer of 64 bits");
+    throw cursor.error(in_quotes(glued) + " is not an integer of 64 bits");
   }
   const std::int64_t faces = cursor.integer();
   for (std::string_view edges = cursor.word(); !edges.empty(); edges = cursor.word()) {
-    if (!parse_integer(edges)) throw cursor.error(quoted(edges) + " is not an integer of 64 bits");
+    if (!parse_integer(edges))
+      throw cursor.error(in_quotes(edges) + " is not an integer of 64 bits");
   }
   constexpr std::uint64_t kVertexBytes = 6;  // "0 0 0\n"
   constexpr std::uint64_t kFaceBytes = 2;    // "0\n"
@@ -136,19 +137,19 @@ PolygonMesh read_text(Cursor& cursor, const Layout& layout, const Counts& counts
   return mesh;
 }
 
-double finite_coordinate(Cursor& cursor) {
-  const auto value = cursor.value<float>(std::endian::big);
+double finite_coordinate(Cursor& cursor, std::endian order) {
+  const auto value = cursor.value<float>(order);
   if (!std::isfinite(value)) throw cursor.error("coordinate is not finite");
   return value;
 }
 
-PolygonMesh read_binary(Cursor& cursor) {
-  const auto integer = [&cursor] { return cursor.value<std::int32_t>(std::endian::big); };
+PolygonMesh read_binary(Cursor cursor, std::endian order) {
+  const auto integer = [&] { return cursor.value<std::int32_t>(order); };
   const std::int64_t vertices = integer();
   const std::int64_t faces = integer();
   (void)integer();  // edges, never used
   constexpr std::uint64_t kVertexBytes = 12;
-  constexpr std::uint64_t kFaceBytes = 8;
+  constexpr std::uint64_t kFaceBytes = 4;
   const Counts counts = checked(cursor, vertices, faces, kVertexBytes, kFaceBytes);
 
   PolygonMesh mesh;
@@ -156,9 +157,9 @@ PolygonMesh read_binary(Cursor& cursor) {
   mesh.ends.reserve(static_cast<std::size_t>(counts.faces));
   for (std::int64_t i = 0; i < counts.vertices; ++i) {
     cursor.enter("vertex", i);
-    const double x = finite_coordinate(cursor);
-    const double y = finite_coordinate(cursor);
-    mesh.add_vertex(x, y, finite_coordinate(cursor));
+    const double x = finite_coordinate(cursor, order);
+    const double y = finite_coordinate(cursor, order);
+    mesh.add_vertex(x, y, finite_coordinate(cursor, order));
   }
   for (std::int64_t i = 0; i < counts.faces; ++i) {
     cursor.enter("face", i);
@@ -167,12 +168,27 @@ PolygonMesh read_binary(Cursor& cursor) {
       mesh.corners.push_back(cursor.checked_index(integer(), counts.vertices));
     }
     mesh.end_polygon();
+    if (order == std::endian::little) continue;  // its writers know no colours
     cursor.take(4 * static_cast<std::uint64_t>(cursor.checked_count(integer(), 4, "colours")));
   }
   if (cursor.rest().find_first_not_of(" \t\r\n\v\f") != std::string_view::npos) {
     mesh.findings.add_count(Finding::trailing_data);
   }
   return mesh;
+}
+
+// The format is big-endian, yet the files of some writers (pmp-library) are as their
+// machine: no count makes sense in both orders unless it is tiny or the file enormous.
+std::endian byte_order(Cursor cursor) {
+  const auto fits = [&cursor](std::endian order) {
+    Cursor ahead = cursor;
+    const std::int64_t vertices = ahead.value<std::int32_t>(order);
+    const std::int64_t faces = ahead.value<std::int32_t>(order);
+    return vertices >= 0 && faces >= 0 &&
+           static_cast<std::uint64_t>(12 * vertices + 4 * faces) <= ahead.left();
+  };
+  return !fits(std::endian::big) && fits(std::endian::little) ? std::endian::little
+                                                              : std::endian::big;
 }
 
 }  // namespace
@@ -186,7 +202,7 @@ PolygonMesh read_off(Cursor cursor) {
   if (Cursor ahead = cursor; keyword == "OFF" && ahead.word() == "BINARY") {
     ahead.skip_line();
     ahead.expect_binary();
-    return read_binary(ahead);
+    return read_binary(ahead, byte_order(ahead));
   }
   cursor.refuse_nul();
   if (layout.dimension) require_three_dimensions(cursor);

@@ -134,7 +134,7 @@ class PlyReader {
       }
     }
     if (const auto word = cursor_.word(); !word.empty()) {
-      throw cursor_.error(quoted(word) + " is one value more than the header declares");
+      throw cursor_.error(in_quotes(word) + " is one value more than the header declares");
     }
     cursor_.skip_line();
   }

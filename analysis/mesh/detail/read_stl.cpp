@@ -54,8 +54,7 @@ class StlTextReader {
   std::vector<double> read() {
     while (cursor_.seek_word()) {
       if (lower(cursor_.word()) != "solid") throw unexpected("solid");
-      cursor_.skip_line();  // the rest is a name
-      for (next(); !is("endsolid"); next()) facet();
+      for (next(); !is("endsolid"); next()) facet();  // what is left on the line is a name
       cursor_.skip_line();
     }
     return std::move(corners_);
@@ -95,7 +94,7 @@ class StlTextReader {
 
   void end_line() {
     if (const auto word = cursor_.word(); !word.empty()) {
-      throw cursor_.error(quoted(word) + " is one value too many");
+      throw cursor_.error(in_quotes(word) + " is one value too many");
     }
   }
 

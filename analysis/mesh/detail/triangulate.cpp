@@ -141,14 +141,14 @@ class EarClipper {
     const Point2& a = flat_[before_[i]];
     const Point2& b = flat_[i];
     const Point2& c = flat_[after_[i]];
-    const auto [left, right] = std::minmax({a.x, b.x, c.x});
-    const auto [bottom, top] = std::minmax({a.y, b.y, c.y});
+    const auto x = std::minmax({a.x, b.x, c.x});
+    const auto y = std::minmax({a.y, b.y, c.y});
     budget_ -= static_cast<std::int64_t>(blockers_.size());
     if (budget_ < 0) return false;
     return std::none_of(blockers_.begin(), blockers_.end(), [&](std::size_t k) {
       const Point2& p = flat_[k];
-      return p.x >= left && p.x <= right && p.y >= bottom && p.y <= top && p != a && p != b &&
-             p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+      return p.x >= x.first && p.x <= x.second && p.y >= y.first && p.y <= y.second && p != a &&
+             p != b && p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
     });
   }
 

@@ -31,6 +31,7 @@ std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix
   if (format == "npy") return npy_of(matrices.front().values);
   if (format == "txt") return to_rows_text(matrices.front().values);
   std::vector<NamedArray> arrays;
+  arrays.reserve(matrices.size());
   for (const NamedMatrix& matrix : matrices) {
     arrays.push_back({matrix.name, npy_of(matrix.values)});
   }

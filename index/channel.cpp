@@ -44,7 +44,7 @@ const Channel& find_channel(const std::string& name) {
   std::string names;
   for (const Channel& channel : channels()) {
     if (channel.name == name) return channel;
-    names += (names.empty() ? "" : ", ") + channel.name;
+    names.append(names.empty() ? "" : ", ").append(channel.name);
   }
   throw Error(ErrorKind::bad_request, "", "channel",
               "there is no '" + name + "'; there are " + names);

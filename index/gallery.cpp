@@ -9,10 +9,13 @@
 namespace timbre {
 namespace {
 
+double finite_or_last(double distance) {
+  return std::isfinite(distance) ? distance : std::numeric_limits<double>::infinity();
+}
+
 bool comes_before(const Neighbor& a, const Neighbor& b) {
-  constexpr double kLast = std::numeric_limits<double>::infinity();
-  const double da = std::isnan(a.distance) ? kLast : a.distance;
-  const double db = std::isnan(b.distance) ? kLast : b.distance;
+  const double da = finite_or_last(a.distance);
+  const double db = finite_or_last(b.distance);
   return da < db || (da == db && a.index < b.index);
 }
 

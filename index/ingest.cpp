@@ -101,6 +101,10 @@ void read_and_solve(const IngestInput& input, const StoreParameters& parameters,
   if (entry != known.end() && entry->second.first == content_of(file.mesh) &&
       (!replace || entry->second.second == input.label)) {
     computed.result.outcome = AddOutcome::kept;
+    if (!input.label.empty() && entry->second.second != input.label) {
+      computed.result.warnings.push_back(
+          {"label-kept", 1, "keeps its label '" + entry->second.second + "' without --replace"});
+    }
     return;
   }
   computed.record = compute_record(name, input.label, std::move(file.mesh), parameters, progress);

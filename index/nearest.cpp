@@ -158,10 +158,12 @@ struct NearestIndex::Impl {
     std::int64_t wanted = 0;
     std::int64_t found = 0;
     for (std::int64_t q = 0; q < queries; ++q) {
-      const auto query = gallery.vector(indexed[static_cast<std::size_t>(q * size / queries)]);
-      const auto truth = rank_all(gallery, query, kRecallDepth);
-      const auto near =
-          rank_candidates(gallery, query, candidates(query, kRecallCandidates), kRecallDepth);
+      const std::int64_t own = indexed[static_cast<std::size_t>(q * size / queries)];
+      const auto query = gallery.vector(own);
+      const auto truth = rank_all(gallery, query, kRecallDepth, own);
+      std::vector<std::int64_t> offered = candidates(query, kRecallCandidates);
+      std::erase(offered, own);
+      const auto near = rank_candidates(gallery, query, offered, kRecallDepth);
       // By distance: of shapes at equal distance any will do.
       for (std::size_t i = 0; i < truth.size(); ++i) {
         ++wanted;

@@ -115,8 +115,12 @@ void Store::remove(const std::string& name) {
 TriangleMesh Store::mesh(const std::string& name) const {
   const Transaction snapshot(impl_->database, Transaction::Kind::read);
   const ShapeInfo shape = impl_->require(name);
-  return detail::unpack_mesh(impl_->read_blob(shape, detail::kMeshBlob).bytes, shape.vertices,
-                             shape.faces);
+  const Blob blob = impl_->read_blob(shape, detail::kMeshBlob);
+  try {
+    return detail::unpack_mesh(blob.bytes, shape.vertices, shape.faces);
+  } catch (const Error& error) {
+    throw error.in_file(impl_->database.path());
+  }
 }
 
 Eigen::VectorXd Store::eigenvalues(const std::string& name) const {

@@ -59,7 +59,7 @@ Eigen::VectorXd compute_distance_quantiles(const Eigen::MatrixXd& coordinates,
   }
   const Eigen::MatrixXd points = draw_by_area(coordinates, masses, options.samples);
   std::vector<double> distances;
-  distances.reserve(static_cast<std::size_t>(options.samples) * (options.samples - 1) / 2);
+  distances.reserve(static_cast<std::size_t>(points.cols() * (points.cols() - 1) / 2));
   for (Index i = 0; i < points.cols(); ++i) {
     for (Index j = i + 1; j < points.cols(); ++j) {
       distances.push_back((points.col(i) - points.col(j)).norm());

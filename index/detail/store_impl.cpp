@@ -1,6 +1,6 @@
 #include "timbre/index/detail/store_impl.h"
 
-#include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "timbre/index/detail/text.h"
@@ -32,16 +32,14 @@ Store::Impl::Row Store::Impl::checked_row(const Statement& row) const {
   found.info.name = row.text(1);
   found.info.label = row.text(2);
   const auto content = row.blob(3);
-  std::transform(content.begin(), content.begin() + std::min(content.size(), std::size_t{32}),
-                 found.info.content.begin(),
-                 [](std::byte b) { return static_cast<std::uint8_t>(b); });
+  const bool whole = content.size() == found.info.content.size();
+  if (whole) std::memcpy(found.info.content.data(), content.data(), content.size());
   found.info.vertices = row.integer(4);
   found.info.faces = row.integer(5);
   found.info.area = row.real(6);
   found.blobs = row.integer(7);
   found.digest = detail::digest_of_shape(found.info, found.blobs);
-  if (content.size() != found.info.content.size() ||
-      !detail::same_bytes(found.digest, row.blob(8))) {
+  if (!whole || !detail::same_bytes(found.digest, row.blob(8))) {
     throw detail::damaged(database.path(), "shape " + detail::in_quotes(found.info.name));
   }
   return found;

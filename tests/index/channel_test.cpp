@@ -75,5 +75,19 @@ TEST(Channels, DescribeASmallMeshByLess) {
   EXPECT_EQ(record.eigenvalues.size(), 42);
 }
 
+TEST(Channels, DescribeAMeshOfMoreComponentsThanEigenvalues) {
+  TriangleMesh crumbs;
+  crumbs.vertices.resize(30, 3);
+  crumbs.faces.resize(10, 3);
+  for (std::int32_t i = 0; i < 10; ++i) {
+    crumbs.vertices.middleRows(3 * i, 3) << i, 0, 0, i + 0.5, 0, 0, i, 0.5, 0;
+    crumbs.faces.row(i) << 3 * i, 3 * i + 1, 3 * i + 2;
+  }
+  for (const Descriptor& descriptor : compute_record("c", "", crumbs, {.count = 5}).descriptors) {
+    EXPECT_EQ(descriptor.values.size(), descriptor.channel == "gps_q" ? 0 : 4);
+    EXPECT_TRUE(descriptor.values.allFinite());
+  }
+}
+
 }  // namespace
 }  // namespace timbre

@@ -71,6 +71,19 @@ TEST(AddFiles, KeepsReportsAndReplaces) {
   EXPECT_TRUE(store.verify().damaged.empty());
 }
 
+TEST(AddFiles, SaysThatAnotherLabelWasNotTaken) {
+  const TemporaryFolder folder;
+  Store store = Store::create(folder / "db", kFew);
+  std::vector<IngestInput> inputs = ellipsoids(folder, 1);
+  (void)outcomes(store, inputs);
+  inputs[0].label = "other";
+  add_files(store, inputs, {}, [](const IngestResult& result) {
+    EXPECT_EQ(result.outcome, AddOutcome::kept);
+    ASSERT_EQ(result.warnings.size(), 1U);
+    EXPECT_EQ(result.warnings[0].message, "keeps its label 'even' without --replace");
+  });
+}
+
 TEST(AddFiles, NamesTheFileInItsErrors) {
   const TemporaryFolder folder;
   Store store = Store::create(folder / "db", kFew);

@@ -28,7 +28,7 @@ std::string canonical_text(const Parameters& parameters) {
   std::string text;
   for (const auto& [key, value] : parameters) {
     if (!text.empty()) text += ' ';
-    text += key + '=' + value;
+    text.append(key).append(1, '=').append(value);
   }
   return text;
 }

@@ -10,7 +10,7 @@ cmake --install "$build" --prefix "$work/installed" >/dev/null
 cmake -S "$source/tests/consume" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$work/installed" -DEXAMPLE="$source/docs/examples/first_steps.cpp" >/dev/null
 cmake --build "$work/build"
-"$work/installed/bin/timbre" dataset make ellipsoid -o "$work/a.ply" --resolution 8
+"$work/installed/bin/timbre" dataset make ellipsoid -o "$work/a.ply" --resolution 600
 answer=$("$work/build/consumer" "$work/a.ply" "$work/a.ply")
 echo "$answer"
 grep -q "lambda_1 = " <<<"$answer"

@@ -59,6 +59,13 @@ std::string to_text(double value, int digits) {
   return {buffer.data(), end};
 }
 
+std::string to_short_text(double value, int digits) {
+  std::array<char, 64> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          std::chars_format::general, digits);
+  return {buffer.data(), end};
+}
+
 std::optional<double> parse_double(std::string_view token) {
   token = without_plus(token);
   const std::string_view digits = token.substr(!token.empty() && token[0] == '-' ? 1 : 0);

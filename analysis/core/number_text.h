@@ -14,6 +14,9 @@ namespace timbre {
 /// With a fixed number of digits after the point, for people; no locale.
 [[nodiscard]] std::string to_text(double value, int digits);
 
+/// With at most `digits` significant digits, for people; no locale.
+[[nodiscard]] std::string to_short_text(double value, int digits = 4);
+
 /// A whole token as a decimal number: `[+-]? digits [. digits] [e[+-]digits]`.
 /// Too small rounds to 0 or a subnormal; too large, hexadecimal, `nan`, `inf`
 /// and anything left over are no number.

@@ -127,8 +127,8 @@ std::string to_text(const std::string& path, const MeshFile& file, const Diagnos
                      counted(found.vertices, "vertex", "vertices") + ", " +
                      counted(found.faces, "triangle", "triangles") + "\n";
   text += "surface: " + surface(found) + "\n";
-  if (found.faces > 0) text += "area: " + timbre::to_text(found.area) + "\n";
-  if (found.volume) text += "volume: " + timbre::to_text(*found.volume) + "\n";
+  if (found.faces > 0) text += "area: " + to_short_text(found.area, 6) + "\n";
+  if (found.volume) text += "volume: " + to_short_text(*found.volume, 6) + "\n";
   for (const std::string& line : findings(found)) text += "- " + line + "\n";
   for (const ReadWarning& warning : file.warnings) {
     if (is_in_findings(warning)) continue;

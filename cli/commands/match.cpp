@@ -23,19 +23,26 @@ std::string list(const std::vector<int>& numbers) {
   return text;
 }
 
-std::string describe(const Switch& item) {
-  switch (item.kind) {
-    case SwitchKind::flipped:
-      return "eigenfunction " + list(item.source) + " appears with the other sign";
-    case SwitchKind::exchanged:
-      return "eigenfunction " + list(item.source) + " is number " + list(item.target) +
-             " of the target";
-    case SwitchKind::mixed:
-      break;
+// Flips of single functions share a line; the rest has one each.
+std::string describe(const std::vector<Switch>& switches) {
+  std::string flipped;
+  std::string others;
+  for (const Switch& item : switches) {
+    if (item.kind == SwitchKind::flipped) {
+      flipped += (flipped.empty() ? "" : ", ") + list(item.source);
+      continue;
+    }
+    others += "  switch:     " + list(item.source);
+    if (item.target.empty()) {
+      others += " of the source has no counterpart\n";
+    } else if (item.kind == SwitchKind::exchanged) {
+      others += " of the source is " + list(item.target) + " of the target\n";
+    } else {
+      others += " together correspond to " + list(item.target) + " of the target\n";
+    }
   }
-  if (item.target.empty()) return "eigenfunction " + list(item.source) + " has no counterpart";
-  return "eigenfunctions " + list(item.source) + " correspond only together, to " +
-         list(item.target) + " of the target";
+  if (flipped.empty()) return others;
+  return "  switch:     " + flipped + " appear with the other sign\n" + others;
 }
 
 std::string describe(const MatchSolution& solution) {
@@ -51,7 +58,7 @@ std::string to_prose(const Arguments& args, const MatchResult& result, const std
   for (std::size_t i = 0; i < result.solutions.size(); ++i) {
     text += (i == 0 ? "  best map:   " : "  other map:  ") + describe(result.solutions[i]);
   }
-  for (const Switch& item : result.switches) text += "  switch:     " + describe(item) + "\n";
+  text += describe(result.switches);
   if (!output.empty()) text += "  wrote " + output + "\n";
   return text;
 }

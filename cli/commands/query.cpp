@@ -26,7 +26,7 @@ QueryAnswer ask(const Arguments& args, const Context& context) {
 
 void show(const Arguments& args, const QueryAnswer& answer, const Context& context) {
   nlohmann::json results = nlohmann::json::array();
-  std::string text;
+  std::string text = "rank\tdistance\tname\tlabel\n";
   for (const QueryResult& result : answer.results) {
     nlohmann::json channels = nlohmann::json::object();
     for (const auto& [channel, distance] : result.channels) channels[channel] = distance;
@@ -37,8 +37,8 @@ void show(const Arguments& args, const QueryAnswer& answer, const Context& conte
          {"distance", result.distance},
          {"score", result.score ? nlohmann::json(*result.score) : nlohmann::json()},
          {"channels", channels}});
-    text += std::to_string(result.rank) + '\t' + to_text(result.distance) + '\t' + result.name +
-            '\t' + result.label + '\n';
+    text += std::to_string(result.rank) + '\t' + to_short_text(result.distance) + '\t' +
+            result.name + '\t' + result.label + '\n';
   }
   const bool exact = answer.recall >= 1.0;
   if (!exact) context.note("approximate: recall of the first ten " + to_text(answer.recall));
@@ -66,7 +66,7 @@ void add_query(CLI::App& timbre, Context& context) {
   command.add_flag("--exact", args->options.exact, "compare with every shape");
   add_common_options(command, context, false);
   command.footer(
-      "Text columns, parted by tabs: rank, distance, name, label.\n"
+      "Text columns are parted by tabs; --json has all digits.\n"
       "Example:\n  timbre query shapes.timbre new.ply -n 5");
   command.callback([args, &context] {
     args->options.progress = context.progress();

@@ -17,7 +17,7 @@
 namespace timbre::cli {
 namespace {
 
-enum class SignatureKind : std::uint8_t { dna, dna_log, hks, wks, gps };
+enum class SignatureKind : std::uint8_t { dna, dna_raw, dna_i, dna_weyl, dna_log, hks, wks, gps };
 
 struct Arguments {
   std::string mesh;
@@ -50,6 +50,13 @@ std::vector<NamedMatrix> signature_of(const Solved& solved, const Arguments& arg
   switch (args.signature) {
     case SignatureKind::dna:
       return {{"dna", compute_shape_dna(spectrum, ShapeDnaForm::plain, args.count)}};
+    case SignatureKind::dna_raw:
+      return {{"dna_raw",
+               compute_shape_dna(spectrum, ShapeDnaForm::plain, args.count) / solved.op.area}};
+    case SignatureKind::dna_i:
+      return {{"dna_i", compute_shape_dna(spectrum, ShapeDnaForm::per_index, args.count)}};
+    case SignatureKind::dna_weyl:
+      return {{"dna_weyl", compute_shape_dna(spectrum, ShapeDnaForm::weyl, args.count)}};
     case SignatureKind::dna_log:
       return {{"dna_log", compute_shape_dna(spectrum, ShapeDnaForm::logarithm, args.count)}};
     case SignatureKind::hks: {
@@ -108,10 +115,15 @@ void add_shared_options(CLI::App& command, Arguments& args, Context& context) {
 void add_signature(CLI::App& timbre, Context& context) {
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *timbre.add_subcommand(
-      "signature", "Descriptors of a mesh (dna, dna_log, gps) or of its vertices (hks, wks)");
-  command.add_option("--kind", args->signature, "dna, dna_log, hks, wks or gps")
+      "signature", "Descriptors of a mesh (dna..., gps) or of its vertices (hks, wks)");
+  command
+      .add_option("--kind", args->signature,
+                  "dna, dna_raw, dna_i, dna_weyl, dna_log, hks, wks or gps")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, SignatureKind>{{"dna", SignatureKind::dna},
+                                               {"dna_raw", SignatureKind::dna_raw},
+                                               {"dna_i", SignatureKind::dna_i},
+                                               {"dna_weyl", SignatureKind::dna_weyl},
                                                {"dna_log", SignatureKind::dna_log},
                                                {"hks", SignatureKind::hks},
                                                {"wks", SignatureKind::wks},
@@ -119,7 +131,8 @@ void add_signature(CLI::App& timbre, Context& context) {
       ->default_str("hks");
   add_shared_options(command, *args, context);
   command.footer(
-      "-o F.npy, F.npz (with times or energies) or F.txt; all at unit total area.\n"
+      "-o F.npy, F.npz (with times or energies) or F.txt. dna are the eigenvalues at unit total\n"
+      "area, dna_raw at the mesh's own scale; all others are at unit total area.\n"
       "Example:\n  timbre signature horse.ply --kind wks -k 200 -o horse_wks.npz");
   command.callback(
       [args, &context] { answer(signature_of(solve(*args, context), *args), *args, context); });

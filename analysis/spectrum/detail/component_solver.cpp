@@ -110,7 +110,8 @@ bool run_lanczos(const Component& component, Index count, const MatrixXd* known,
   const Index n = component.size();
   ShiftInverse inverse(component, known, options);
   MassProduct mass(component);
-  const Index space = std::min(n, (2 + options.attempt) * count + 20 * (1 + options.attempt));
+  const Index attempt = options.attempt;
+  const Index space = std::min(n, (2 + attempt) * count + 20 * (1 + attempt));
   using Solver =
       Spectra::SymGEigsShiftSolver<ShiftInverse, MassProduct, Spectra::GEigsMode::ShiftInvert>;
   try {

@@ -2,28 +2,28 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "timbre/analysis/core/stopwatch.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/matching/candidates.h"
+#include "timbre/matching/detail/stages.h"
 
 namespace timbre {
 namespace {
 
 using Eigen::Index;
 
-constexpr std::array kSampleSizes = {20, 24, 28, 32, 36, 40, 45, 50};
-constexpr std::array kVertexSizes = {50, 60, 72, 86, 100};
 // Space counts from the start, at small sizes, where it still moves the map.
 constexpr std::array kDenseSteps = {DenseStep{100, 2.0, 0.005, 40}, DenseStep{120, 2.0, 0.005, 60},
                                     DenseStep{150, 2.0, 0.005, 100},
                                     DenseStep{200, 2.0, 0.005, 150}};
-constexpr int kVertexSamples = 800;
-constexpr double kDistinct = 0.06;     // mean distance of maps that are different answers
 constexpr double kCloseEnergy = 0.25;  // closer than this: compare after dense refinement
 constexpr double kMirrorPenalty = 2.0;
+// Low frequencies of a sphere or a cup fit in every rotation alike; rivals of a body with
+// limbs differ by ten times this and more.
+constexpr double kSameScore = 1e-3;
 constexpr double kDoubtEnergy = 0.1;  // closer than this: say so
 
 struct Rival {
@@ -34,17 +34,6 @@ struct Rival {
   FunctionalMaps functional;
   double energy = 0.0;
   DenseMaps dense;  ///< of those that were refined
-};
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 class Matcher {
@@ -96,7 +85,7 @@ class Matcher {
     parallel_for(static_cast<std::int64_t>(all.size()), options_.threads, [&](std::int64_t i) {
       Rival& rival = all[static_cast<std::size_t>(i)];
       rival.candidate = std::move(candidates[static_cast<std::size_t>(i)]);
-      rival.sampled = zoom_out_on_samples(a_, b_, rival.candidate.C, kSampleSizes);
+      rival.sampled = zoom_out_on_samples(a_, b_, rival.candidate.C, detail::kSampleSizes);
       rival.energies = measure_energies(a_, b_, rival.sampled);
       rival.sample_energy = sample_score(rival.energies, rival.candidate.orientation);
     });
@@ -121,41 +110,34 @@ class Matcher {
     });
     std::rotate(own.begin(), favourite, favourite + 1);
     const int wanted = oriented_ && orientation < 0 ? 1 : options_.rivals;
-    std::vector<Rival> distinct;
-    for (Rival* rival : own) {
-      const bool is_new = std::all_of(distinct.begin(), distinct.end(), [&](const Rival& other) {
-        return map_distance(a_, b_, rival->sampled.points.ab, other.sampled.points.ab) > kDistinct;
-      });
-      if (is_new) distinct.push_back(*rival);
-      if (static_cast<int>(distinct.size()) == wanted) break;
-    }
+    std::vector<Rival> distinct = detail::first_distinct(a_, b_, own, wanted);
     std::move(distinct.begin(), distinct.end(), std::back_inserter(kept));
   }
 
   void compare_on_vertices(std::vector<Rival>& rivals) {
     parallel_for(static_cast<std::int64_t>(rivals.size()), options_.threads, [&](std::int64_t i) {
       Rival& rival = rivals[static_cast<std::size_t>(i)];
-      rival.functional =
-          zoom_out_to_vertices(a_, b_, rival.sampled.functional, kVertexSizes, kVertexSamples, 1);
+      rival.functional = zoom_out_to_vertices(a_, b_, rival.sampled.functional,
+                                              detail::kVertexSizes, detail::kVertexSamples, 1);
       const double bands = curvature_bands(a_, b_, rival.functional);
       const double commutation =
           commutation_error(a_, b_, rival.functional.ab, rival.functional.ab.rows());
       rival.energy = 0.3 * rival.sample_energy - 3.0 * bands + 2.0 * commutation -
                      4.0 * rival.candidate.score();
     });
-    std::stable_sort(rivals.begin(), rivals.end(), [&](const Rival& x, const Rival& y) {
-      return ranking_energy(x) < ranking_energy(y);
-    });
+    for (Rival& rival : rivals) {
+      if (misoriented(rival)) rival.energy += kMirrorPenalty;
+    }
+    sort_by_energy(rivals);
+  }
+
+  static void sort_by_energy(std::vector<Rival>& rivals) {
+    std::stable_sort(rivals.begin(), rivals.end(),
+                     [](const Rival& x, const Rival& y) { return x.energy < y.energy; });
   }
 
   [[nodiscard]] bool misoriented(const Rival& rival) const {
     return oriented_ && rival.candidate.orientation < 0;
-  }
-
-  // Between poses of a left-right symmetric shape a mirrored map has about the energy of
-  // the right one. Only a shape that is the mirror image of the other has far less.
-  [[nodiscard]] double ranking_energy(const Rival& rival) const {
-    return rival.energy + (misoriented(rival) ? kMirrorPenalty : 0.0);
   }
 
   void refine(Rival& rival) {
@@ -163,21 +145,31 @@ class Matcher {
                                  options_.threads);
   }
 
-  // A close second is refined too. The better dense map takes the better energy, so that
-  // energies stay in the order of the answer.
+  // Those close to the best are refined too and compared again. Dense scores differ by
+  // a fifth of what energies differ by.
   void refine_best(std::vector<Rival>& rivals) {
     if (rivals.empty()) return;
-    refine(rivals[0]);
-    if (rivals.size() < 2 || misoriented(rivals[1]) != misoriented(rivals[0])) return;
-    if (rivals[1].energy - rivals[0].energy > kCloseEnergy) return;
-    refine(rivals[1]);
-    const double first = dense_score(a_, b_, rivals[0].dense, rivals[0].candidate.orientation);
-    const double second = dense_score(a_, b_, rivals[1].dense, rivals[1].candidate.orientation);
-    const double low = std::min(rivals[0].energy, rivals[1].energy);
-    if (second < first) std::swap(rivals[0], rivals[1]);
-    rivals[0].energy = low;
-    // Dense scores differ by a fifth of what energies differ by.
-    rivals[1].energy = low + 5.0 * std::abs(second - first);
+    const double best = rivals[0].energy;
+    const bool mirrored = misoriented(rivals[0]);
+    std::vector<Rival*> close;
+    for (Rival& rival : rivals) {
+      if (misoriented(rival) == mirrored && rival.energy - best <= kCloseEnergy) {
+        close.push_back(&rival);
+      }
+    }
+    std::vector<double> scores;
+    for (Rival* rival : close) {
+      refine(*rival);
+      if (close.size() > 1) {
+        scores.push_back(dense_score(a_, b_, rival->dense, rival->candidate.orientation));
+      }
+    }
+    if (scores.empty()) return;
+    const double least = *std::min_element(scores.begin(), scores.end());
+    for (std::size_t i = 0; i < close.size(); ++i) {
+      close[i]->energy = best + 5.0 * (scores[i] - least);
+    }
+    sort_by_energy(rivals);
   }
 
   void report(std::vector<Rival>& rivals, MatchResult& result) {
@@ -195,9 +187,9 @@ class Matcher {
                              : rival.candidate.orientation > 0 ? MapOrientation::direct
                                                                : MapOrientation::mirrored;
       solution.energies = rival.energies;
+      solution.search_score = rival.candidate.score();
       solution.coverage = rival.energies.coverage;
-      solution.confidence =
-          std::exp((ranking_energy(rivals[0]) - ranking_energy(rival)) / kDoubtEnergy);
+      solution.confidence = std::exp((rivals[0].energy - rival.energy) / kDoubtEnergy);
       total += solution.confidence;
       solution.functional =
           rival.dense.points.ab.empty() ? rival.functional : rival.dense.functional;
@@ -222,16 +214,27 @@ class Matcher {
 
   void judge(MatchResult& result) const {
     const MatchSolution& best = result.solutions[0];
-    const double agreement = std::abs(best.energies.areas);
-    if (agreement < 0.3 || best.energies.geodesic > 0.16) {
+    const bool sided = a_.orientation != Orientation::none && b_.orientation != Orientation::none;
+    const auto second = std::find_if(
+        result.solutions.begin() + 1, result.solutions.end(),
+        [&](const MatchSolution& other) { return other.orientation == best.orientation; });
+    // Written so that NaN fails.
+    const bool plausible =
+        best.energies.geodesic <= 0.16 && (!sided || std::abs(best.energies.areas) >= 0.3);
+    if (!plausible) {
       result.verdict = Verdict::failed;
       result.reason = "the best map stretches distances and area forms too much to be one";
     } else if (!oriented_) {
       result.verdict = Verdict::ambiguous;
-      result.reason =
-          "a shape is open, non-manifold or one-sided: left and right cannot be told apart";
-    } else if (result.solutions.size() > 1 && result.solutions[1].orientation == best.orientation &&
-               result.solutions[1].energy - best.energy < kDoubtEnergy) {
+      result.reason = "a shape is open or one-sided: left and right cannot be told apart";
+    } else if (std::any_of(result.solutions.begin() + 1, result.solutions.end(),
+                           [&](const MatchSolution& other) {
+                             return other.orientation == best.orientation &&
+                                    other.search_score > best.search_score - kSameScore;
+                           })) {
+      result.verdict = Verdict::ambiguous;
+      result.reason = "the shapes fit each other in several ways: they have a symmetry";
+    } else if (second != result.solutions.end() && second->energy - best.energy < kDoubtEnergy) {
       result.verdict = Verdict::ambiguous;
       result.reason = "another map is nearly as good";
     } else {
@@ -249,6 +252,8 @@ class Matcher {
 }  // namespace
 
 MatchResult match(const MatchSurface& A, const MatchSurface& B, const MatchOptions& options) {
+  detail::require_at_least("candidates", options.candidates, 1);
+  detail::require_at_least("rivals", options.rivals, 1);
   const SingleThreadedBlas blas;
   return Matcher(A, B, options).run();
 }

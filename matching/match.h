@@ -21,16 +21,19 @@ enum class Verdict : std::uint8_t {
 enum class MapOrientation : std::uint8_t {
   direct,    ///< keeps orientation, as a change of pose does
   mirrored,  ///< turns left into right
-  unknown,   ///< a shape is open or one-sided
+  unknown,   ///< a shape is too open to have an inside, or one-sided
 };
 
 /// One answer among several, best first.
 struct MatchSolution {
-  double energy = 0.0;  ///< small is good; comparable within one match only
+  /// Small is good; comparable within one match only. Between closed shapes 2 is added to
+  /// a mirrored map: poses of a left-right symmetric body fit it as well as the right one.
+  double energy = 0.0;
   MapOrientation orientation = MapOrientation::unknown;
-  double coverage = 0.0;    ///< share of both areas that is hit
-  double confidence = 0.0;  ///< share among the solutions by energy; not calibrated
-  MapEnergies energies;     ///< on samples
+  double coverage = 0.0;      ///< share of both areas that is hit
+  double confidence = 0.0;    ///< share among the solutions by energy; not calibrated
+  MapEnergies energies;       ///< on samples
+  double search_score = 0.0;  ///< of the candidate it came from; 2 for an isometry
   FunctionalMaps functional;
 };
 
@@ -64,6 +67,7 @@ struct MatchOptions {
 /// mirrored map is better by far; the best mirrored map stands among the solutions.
 ///
 /// Vertices outside the largest component, or in no triangle, are unmatched (-1).
+/// @throws Error  bad_request unless `candidates` and `rivals` are at least 1; cancelled
 [[nodiscard]] MatchResult match(const MatchSurface& A, const MatchSurface& B,
                                 const MatchOptions& options = {});
 

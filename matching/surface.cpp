@@ -10,6 +10,7 @@
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/analysis/operators/operator.h"
+#include "timbre/matching/detail/stages.h"
 
 namespace timbre {
 namespace {
@@ -18,7 +19,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kLeastVertices = 30;
+constexpr int kLeastVertices = 30;
+
+void require_request_makes_sense(const SurfaceOptions& options) {
+  detail::require_at_least("eigenpairs", options.eigenpairs, 8);
+  detail::require_at_least("samples", options.samples, kLeastVertices);
+  detail::require_at_least("geodesic_samples", options.geodesic_samples, kLeastVertices);
+  detail::require_at_least("tensor_size", options.tensor_size, 3);
+}
 
 struct Component {
   TriangleMesh mesh;
@@ -98,20 +106,42 @@ Tensor3 slices(const MatrixXd& flat, Index k) {
   return tensor;
 }
 
+constexpr Index kBlock = 4096;  // rows whose pairs are held at a time
+
+Tensor3 product_tensor(const MatrixXd& phi, const VectorXd& mass) {
+  const Index k = phi.cols();
+  MatrixXd sum = MatrixXd::Zero(k * k, k);
+  for (Index first = 0; first < phi.rows(); first += kBlock) {
+    const auto rows = Eigen::seqN(first, std::min(kBlock, phi.rows() - first));
+    const MatrixXd part = phi(rows, Eigen::all);
+    sum += product_at_b(pair_columns(part, part), mass(rows).asDiagonal() * part);
+  }
+  return slices(sum, k);
+}
+
+// dphi_i ^ dphi_j is constant on a triangle, phi_k enters by its mean there.
+Tensor3 area_tensor(const MatrixXd& phi, const Faces& faces) {
+  const Index k = phi.cols();
+  MatrixXd sum = MatrixXd::Zero(k * k, k);
+  for (Index first = 0; first < faces.rows(); first += kBlock) {
+    const auto rows = Eigen::seqN(first, std::min(kBlock, faces.rows() - first));
+    const Faces part = faces(rows, Eigen::all);
+    const MatrixXd base = phi(Eigen::VectorXi(part.col(0)), Eigen::all);
+    const MatrixXd e1 = phi(Eigen::VectorXi(part.col(1)), Eigen::all) - base;
+    const MatrixXd e2 = phi(Eigen::VectorXi(part.col(2)), Eigen::all) - base;
+    const MatrixXd mean = base + (e1 + e2) / 3.0;
+    sum += product_at_b(0.5 * (pair_columns(e1, e2) - pair_columns(e2, e1)), mean);
+  }
+  return slices(sum, k);
+}
+
 void compute_tensors(MatchSurface& s, Index k) {
   const MatrixXd phi = s.vectors.middleCols(1, k);
-  s.products = slices(product_at_b(pair_columns(phi, phi), s.mass.asDiagonal() * phi), k);
-
-  // dphi_i ^ dphi_j is constant on a triangle, phi_k enters by its mean there.
-  const Eigen::VectorXi a = s.faces.col(0);
-  const Eigen::VectorXi b = s.faces.col(1);
-  const Eigen::VectorXi c = s.faces.col(2);
-  const MatrixXd base = phi(a, Eigen::all);
-  const MatrixXd e1 = phi(b, Eigen::all) - base;
-  const MatrixXd e2 = phi(c, Eigen::all) - base;
-  const MatrixXd mean = base + (e1 + e2) / 3.0;
-  const MatrixXd wedge = 0.5 * (pair_columns(e1, e2) - pair_columns(e2, e1));
-  s.areas = slices(product_at_b(wedge, mean), k);
+  s.products = product_tensor(phi, s.mass);
+  // A one-sided surface has no area form.
+  s.areas = s.orientation == Orientation::none
+                ? Tensor3(static_cast<std::size_t>(k), MatrixXd::Zero(k, k))
+                : area_tensor(phi, s.faces);
 }
 
 // Geodesic farthest points, then Euclidean ones, which cost less and fill the gaps.
@@ -164,6 +194,7 @@ MatchSurface prepared(const TriangleMesh& mesh, const Operator& op, Spectrum spe
 }  // namespace
 
 MatchSurface prepare_surface(const TriangleMesh& mesh, const SurfaceOptions& options) {
+  require_request_makes_sense(options);
   const SingleThreadedBlas blas;
   const Component part = largest_component(mesh, compute_operator(mesh));
   const Index n = part.mesh.vertices.rows();
@@ -184,6 +215,7 @@ MatchSurface prepare_surface(const TriangleMesh& mesh, const SurfaceOptions& opt
 
 MatchSurface prepare_surface(const TriangleMesh& mesh, Spectrum spectrum,
                              const SurfaceOptions& options) {
+  require_request_makes_sense(options);
   const SingleThreadedBlas blas;
   const Operator op = compute_operator(mesh);
   const Index n = mesh.vertices.rows();
@@ -191,10 +223,11 @@ MatchSurface prepare_surface(const TriangleMesh& mesh, Spectrum spectrum,
     throw Error(ErrorKind::bad_request, "", "mesh",
                 "has several components or unused vertices; they cannot share a spectrum here");
   }
-  if (spectrum.vectors.rows() != n || n < kLeastVertices || spectrum.values.size() < 2) {
+  if (spectrum.vectors.rows() != n || n < kLeastVertices || spectrum.values.size() < 8) {
     throw Error(ErrorKind::bad_request, "", "spectrum",
                 "is of " + std::to_string(spectrum.vectors.rows()) + " vertices, the mesh has " +
-                    std::to_string(n) + "; matching needs " + std::to_string(kLeastVertices));
+                    std::to_string(n) + "; matching needs " + std::to_string(kLeastVertices) +
+                    " and 8 eigenpairs");
   }
   MatchSurface s = prepared(mesh, op, std::move(spectrum), options);
   s.vertex.resize(static_cast<std::size_t>(n));

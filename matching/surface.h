@@ -29,7 +29,7 @@ struct MatchSurface {
   Points normals;        ///< n x 3, unit, area-weighted
   Eigen::VectorXd mass;  ///< n, lumped, sums to 1
   GeodesicGraph graph;   ///< edges and unfolded diagonals
-  Orientation orientation = Orientation::unknown;
+  Orientation orientation = Orientation::none;
 
   Eigen::VectorXd values;   ///< k eigenvalues, values(0) = 0
   Eigen::MatrixXd vectors;  ///< n x k
@@ -46,10 +46,10 @@ struct MatchSurface {
 };
 
 struct SurfaceOptions {
-  int eigenpairs = 200;        ///< fewer on meshes with fewer vertices
-  int samples = 1000;          ///< points for the finer stages
-  int geodesic_samples = 400;  ///< of these with a row of distances
-  int tensor_size = 20;        ///< functions the search may use, the constant left out
+  int eigenpairs = 200;        ///< at least 8; fewer on meshes with fewer vertices
+  int samples = 1000;          ///< points for the finer stages; at least 30
+  int geodesic_samples = 400;  ///< of these with a row of distances; at least 30
+  int tensor_size = 20;        ///< functions the search may use, the constant not; at least 3
   int threads = 0;             ///< 0: all cores; the result does not depend on it
   Progress progress = {};
 };
@@ -57,6 +57,7 @@ struct SurfaceOptions {
 /// Spectrum, samples, geodesic distances, curvature and tensors of one mesh.
 ///
 /// @throws Error  bad_input if the largest component has fewer than 30 vertices;
+///                bad_request for options below their least values;
 ///                whatever `compute_operator` and `compute_spectrum` throw
 /// @see Ren et al. 2018 (orientation by dphi_i ^ dphi_j); Huang and Ovsjanikov 2017,
 ///      Nogneng and Ovsjanikov 2017 (maps preserve products)

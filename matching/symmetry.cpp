@@ -8,6 +8,7 @@
 #include "timbre/analysis/core/threads.h"
 #include "timbre/matching/candidates.h"
 #include "timbre/matching/deformation.h"
+#include "timbre/matching/detail/stages.h"
 
 namespace timbre {
 namespace {
@@ -15,11 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::array kSampleSizes = {20, 24, 28, 32, 36, 40, 45, 50};
-constexpr std::array kVertexSizes = {50, 60, 72, 86, 100};
 constexpr std::array kDenseSizes = {100, 125, 150};
-constexpr Index kVertexSamples = 800;
-constexpr double kDistinct = 0.06;  // mean distance of maps that are different answers
 constexpr double kStretched = 0.1;  // beyond this mean change of distances it is no symmetry
 constexpr double kEnergyScale = 0.03;
 
@@ -57,7 +54,7 @@ std::vector<Rival> compare_on_samples(const MatchSurface& s, const std::vector<C
   parallel_for(static_cast<std::int64_t>(all.size()), options.threads, [&](std::int64_t i) {
     const auto at = static_cast<std::size_t>(i);
     Rival& rival = all[at];
-    rival.sampled = zoom_out_on_samples(s, s, symmetric_part(found[at].C), kSampleSizes);
+    rival.sampled = zoom_out_on_samples(s, s, symmetric_part(found[at].C), detail::kSampleSizes);
     rival.energies = measure_energies(s, s, rival.sampled);
     rival.sample_energy = sample_score(rival.energies, -1);
     rival.C = 0.5 * (rival.sampled.functional.ab + rival.sampled.functional.ba);
@@ -65,15 +62,9 @@ std::vector<Rival> compare_on_samples(const MatchSurface& s, const std::vector<C
   std::stable_sort(all.begin(), all.end(), [](const Rival& x, const Rival& y) {
     return x.sample_energy < y.sample_energy;
   });
-  std::vector<Rival> distinct;
-  for (Rival& rival : all) {
-    const bool is_new = std::all_of(distinct.begin(), distinct.end(), [&](const Rival& other) {
-      return map_distance(s, s, rival.sampled.points.ab, other.sampled.points.ab) > kDistinct;
-    });
-    if (is_new) distinct.push_back(std::move(rival));
-    if (static_cast<int>(distinct.size()) == options.rivals) break;
-  }
-  return distinct;
+  std::vector<Rival*> ranked;
+  for (Rival& rival : all) ranked.push_back(&rival);
+  return detail::first_distinct(s, s, ranked, options.rivals);
 }
 
 // One map serves both directions, because C is symmetric.
@@ -86,13 +77,13 @@ PointMap nearest_images(const MatchSurface& s, const MatrixXd& C, const PointMap
 }
 
 void refine(const MatchSurface& s, Rival& rival) {
-  const auto count = std::min<Index>(kVertexSamples, static_cast<Index>(s.samples.size()));
+  const auto count = std::min<Index>(detail::kVertexSamples, static_cast<Index>(s.samples.size()));
   const PointMap samples(s.samples.begin(), s.samples.begin() + count);
   const Eigen::VectorXd even = Eigen::VectorXd::Ones(count);
   const auto leading = [&](int size) {
     return Eigen::seqN(0, std::min<Index>(size, s.vectors.cols()));
   };
-  for (const int size : kVertexSizes) {
+  for (const int size : detail::kVertexSizes) {
     const PointMap images = nearest_images(s, rival.C, samples, 1);
     rival.C = symmetric_part(fit_functional_map(s.vectors(samples, leading(size)), even,
                                                 s.vectors(images, leading(size))));
@@ -138,6 +129,8 @@ double energy_of(const MatchSurface& s, const Rival& rival) {
 
 std::vector<Reflection> find_reflections(const MatchSurface& shape,
                                          const SymmetryOptions& options) {
+  detail::require_at_least("candidates", options.candidates, 1);
+  detail::require_at_least("rivals", options.rivals, 1);
   const SingleThreadedBlas blas;
   ProgressReporter reporter(options.progress, "symmetry", 3);
   const std::vector<Candidate> candidates = search(shape, options);
@@ -153,7 +146,7 @@ std::vector<Reflection> find_reflections(const MatchSurface& shape,
   });
   reporter.advance();
   std::erase_if(rivals, [](const Rival& rival) {
-    return rival.energies.geodesic > kStretched || rival.displacement < kDistinct;
+    return rival.energies.geodesic > kStretched || rival.displacement < detail::kDistinct;
   });
   std::stable_sort(rivals.begin(), rivals.end(),
                    [](const Rival& x, const Rival& y) { return x.energy < y.energy; });

@@ -32,6 +32,7 @@ struct SymmetryOptions {
 /// The reflections of a shape, best first; empty if it has none. The engine of `match`,
 /// from a shape to itself with orientation reversed, so that the identity cannot appear,
 /// and with a functional map that is kept symmetric.
+/// @throws Error  bad_request unless `candidates` and `rivals` are at least 1; cancelled
 /// @see Ovsjanikov, Sun and Guibas 2008; Ren et al. 2018
 [[nodiscard]] std::vector<Reflection> find_reflections(const MatchSurface& shape,
                                                        const SymmetryOptions& options = {});

@@ -10,6 +10,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"
+#include "timbre/analysis/mesh/sides.h"
 
 namespace timbre {
 namespace {
@@ -18,37 +19,15 @@ using Eigen::Index;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Edge (low, high) of a triangle whose third corner is `apex`.
-struct Side {
-  std::int32_t low = 0;
-  std::int32_t high = 0;
-  std::int32_t apex = 0;
-};
-
 struct Link {
   std::int32_t from = 0;
   std::int32_t to = 0;
   double length = 0.0;
 };
 
-std::vector<Side> sorted_sides(const Faces& faces) {
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(3 * faces.rows()));
-  for (Index f = 0; f < faces.rows(); ++f) {
-    for (int c = 0; c < 3; ++c) {
-      const auto [low, high] = std::minmax({faces(f, c), faces(f, (c + 1) % 3)});
-      if (low != high) sides.push_back({low, high, faces(f, (c + 2) % 3)});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.apex) < std::tie(b.low, b.high, b.apex);
-  });
-  return sides;
-}
-
 // Lays two triangles on a common edge into the plane, the edge on the x axis. The line
 // between their apexes counts only where it crosses the edge.
-double unfolded_diagonal(const Points& points, const Side& s, const Side& t) {
+double unfolded_diagonal(const Points& points, const TriangleSide& s, const TriangleSide& t) {
   const Eigen::RowVector3d a = points.row(s.low);
   const Eigen::RowVector3d edge = points.row(s.high) - a;
   const double base = edge.norm();
@@ -67,8 +46,11 @@ double unfolded_diagonal(const Points& points, const Side& s, const Side& t) {
   return std::hypot(px - qx, height);
 }
 
+// Where more triangles meet, pairs would grow with the square of their number.
+constexpr std::size_t kMostSheets = 16;
+
 std::vector<Link> links_of(const TriangleMesh& mesh) {
-  const std::vector<Side> sides = sorted_sides(mesh.faces);
+  const std::vector<TriangleSide> sides = sorted_sides(mesh.faces);
   std::vector<Link> links;
   links.reserve(4 * sides.size());
   const auto join = [&](std::int32_t a, std::int32_t b, double length) {
@@ -77,9 +59,10 @@ std::vector<Link> links_of(const TriangleMesh& mesh) {
     links.push_back({b, a, length});
   };
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    const Side& edge = sides[begin];
-    while (end < sides.size() && sides[end].low == edge.low && sides[end].high == edge.high) ++end;
+    const TriangleSide& edge = sides[begin];
+    end = end_of_edge(sides, begin);
     join(edge.low, edge.high, (mesh.vertices.row(edge.low) - mesh.vertices.row(edge.high)).norm());
+    if (end - begin > kMostSheets) continue;
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t j = i + 1; j < end; ++j) {
         join(sides[i].apex, sides[j].apex, unfolded_diagonal(mesh.vertices, sides[i], sides[j]));
@@ -125,6 +108,13 @@ void lower_from(const GeodesicGraph& graph, std::int32_t source, Eigen::VectorXd
   spread(graph, queue, distance);
 }
 
+void require_vertex(const GeodesicGraph& graph, std::int32_t source) {
+  if (source >= 0 && source < graph.size()) return;
+  throw Error(ErrorKind::bad_request, "", "sources",
+              "vertex " + std::to_string(source) + " does not exist; the mesh has " +
+                  std::to_string(graph.size()));
+}
+
 }  // namespace
 
 GeodesicGraph make_geodesic_graph(const TriangleMesh& mesh) {
@@ -147,11 +137,7 @@ Eigen::VectorXd graph_distances(const GeodesicGraph& graph,
   Eigen::VectorXd distance = Eigen::VectorXd::Constant(graph.size(), kInfinity);
   Queue queue;
   for (const std::int32_t source : sources) {
-    if (source < 0 || source >= graph.size()) {
-      throw Error(ErrorKind::bad_request, "", "sources",
-                  "vertex " + std::to_string(source) + " does not exist; the mesh has " +
-                      std::to_string(graph.size()));
-    }
+    require_vertex(graph, source);
     distance[source] = 0.0;
     queue.emplace(0.0, source);
   }
@@ -170,6 +156,7 @@ RowMatrixXf graph_distance_rows(const GeodesicGraph& graph,
 
 std::vector<std::int32_t> geodesic_farthest_points(const GeodesicGraph& graph, Index count,
                                                    std::int32_t first) {
+  require_vertex(graph, first);
   std::vector<std::int32_t> points;
   Eigen::VectorXd distance = Eigen::VectorXd::Constant(graph.size(), kInfinity);
   count = std::min(count, graph.size());
@@ -177,6 +164,7 @@ std::vector<std::int32_t> geodesic_farthest_points(const GeodesicGraph& graph, I
   while (static_cast<Index>(points.size()) < count) {
     points.push_back(static_cast<std::int32_t>(next));
     lower_from(graph, points.back(), distance);
+    distance[next] = -1.0;  // never again, not even among coincident vertices
     distance.maxCoeff(&next);
   }
   return points;

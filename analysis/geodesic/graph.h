@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "timbre/analysis/core/matrix_product.h"
-#include "timbre/analysis/core/progress.h"
 #include "timbre/analysis/mesh/triangle_mesh.h"
 
 namespace timbre {
@@ -17,12 +16,12 @@ namespace timbre {
 struct GeodesicGraph {
   std::vector<std::int64_t> start;      ///< n + 1: neighbours of v are [start[v], start[v+1])
   std::vector<std::int32_t> neighbour;  ///< ascending for each v
-  std::vector<double> length;           ///< > 0, in the mesh's unit
+  std::vector<double> length;           ///< >= 0, in the mesh's unit
 
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(start.size()) - 1; }
 };
 
-/// Any triangle mesh; where more than two triangles share an edge, each pair is unfolded.
+/// Any triangle mesh; where up to 16 triangles share an edge, each pair is unfolded.
 [[nodiscard]] GeodesicGraph make_geodesic_graph(const TriangleMesh& mesh);
 
 /// Distance of every vertex to the nearest of `sources`; infinite where none is reached.
@@ -38,7 +37,8 @@ struct GeodesicGraph {
                                               int threads);
 
 /// `count` vertices (capped at n), each the farthest from those before it, from `first`
-/// on; ties to the smaller index.
+/// on; ties to the smaller index, and no vertex twice.
+/// @throws Error  bad_request if `first` is no vertex
 [[nodiscard]] std::vector<std::int32_t> geodesic_farthest_points(const GeodesicGraph& graph,
                                                                  Eigen::Index count,
                                                                  std::int32_t first);

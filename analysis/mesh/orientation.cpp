@@ -2,118 +2,131 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <tuple>
+#include <cmath>
 #include <utility>
 #include <vector>
+
+#include "timbre/analysis/mesh/sides.h"
 
 namespace timbre {
 namespace {
 
 using Eigen::Index;
 
-// A side of a triangle; `forward`: it runs from the smaller vertex to the larger.
-struct Side {
-  std::int32_t low = 0;
-  std::int32_t high = 0;
-  std::int32_t face = 0;
-  bool forward = false;
-};
-
-bool is_surface_face(const Faces& faces, Index f) {
-  return faces(f, 0) != faces(f, 1) && faces(f, 1) != faces(f, 2) && faces(f, 2) != faces(f, 0);
-}
-
-std::vector<Side> sorted_sides(const Faces& faces) {
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(3 * faces.rows()));
-  for (Index f = 0; f < faces.rows(); ++f) {
-    if (!is_surface_face(faces, f)) continue;
-    for (int c = 0; c < 3; ++c) {
-      const std::int32_t a = faces(f, c);
-      const std::int32_t b = faces(f, (c + 1) % 3);
-      sides.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), a < b});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tuple(a.low, a.high, a.face) < std::tuple(b.low, b.high, b.face);
-  });
-  return sides;
-}
-
 struct Neighbour {
   std::int32_t face = 0;
   bool must_differ = false;  ///< both run along the edge the same way: one must turn
 };
 
-// Empty unless each edge has exactly two faces.
-std::vector<std::vector<Neighbour>> closed_manifold_neighbours(const Faces& faces) {
-  const std::vector<Side> sides = sorted_sides(faces);
-  std::vector<std::vector<Neighbour>> neighbours(static_cast<std::size_t>(faces.rows()));
-  for (std::size_t i = 0; i < sides.size(); i += 2) {
-    const auto same_edge = [&](std::size_t j) {
-      return j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;
-    };
-    if (!same_edge(i + 1) || same_edge(i + 2)) return {};
-    const Side& a = sides[i];
-    const Side& b = sides[i + 1];
+struct Adjacency {
+  std::vector<std::vector<Neighbour>> of_face;  ///< across edges of exactly two triangles
+  double open_share = 0.0;                      ///< of the edges: not of two triangles
+};
+
+Adjacency adjacency_of(const Faces& faces) {
+  const std::vector<TriangleSide> sides = sorted_sides(faces);
+  Adjacency adjacency;
+  adjacency.of_face.resize(static_cast<std::size_t>(faces.rows()));
+  double edges = 0.0;
+  double open = 0.0;
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    end = end_of_edge(sides, begin);
+    edges += 1.0;
+    if (end - begin != 2) {
+      open += 1.0;
+      continue;
+    }
+    const TriangleSide& a = sides[begin];
+    const TriangleSide& b = sides[begin + 1];
     const bool differ = a.forward == b.forward;
-    neighbours[static_cast<std::size_t>(a.face)].push_back({b.face, differ});
-    neighbours[static_cast<std::size_t>(b.face)].push_back({a.face, differ});
+    adjacency.of_face[static_cast<std::size_t>(a.face)].push_back({b.face, differ});
+    adjacency.of_face[static_cast<std::size_t>(b.face)].push_back({a.face, differ});
   }
-  return neighbours;
+  adjacency.open_share = edges > 0.0 ? open / edges : 1.0;
+  return adjacency;
 }
 
-// Which faces to turn; empty for a one-sided surface.
-std::vector<bool> faces_to_turn(const std::vector<std::vector<Neighbour>>& neighbours) {
-  std::vector<bool> turn(neighbours.size(), false);
-  std::vector<bool> seen(neighbours.size(), false);
+struct Winding {
+  std::vector<bool> turn;           ///< which faces to turn
+  std::vector<std::int32_t> patch;  ///< faces joined by edges of two triangles
+  std::int32_t patches = 0;
+  bool one_sided = false;
+};
+
+Winding wind(const Adjacency& adjacency) {
+  const std::size_t count = adjacency.of_face.size();
+  Winding winding{std::vector<bool>(count, false), std::vector<std::int32_t>(count, -1)};
   std::vector<std::size_t> queue;
-  for (std::size_t start = 0; start < neighbours.size(); ++start) {
-    if (seen[start]) continue;
-    seen[start] = true;
+  for (std::size_t start = 0; start < count; ++start) {
+    if (winding.patch[start] >= 0) continue;
+    winding.patch[start] = winding.patches;
     queue.assign(1, start);
     while (!queue.empty()) {
       const std::size_t f = queue.back();
       queue.pop_back();
-      for (const Neighbour& next : neighbours[f]) {
+      for (const Neighbour& next : adjacency.of_face[f]) {
         const auto g = static_cast<std::size_t>(next.face);
-        const bool wanted = turn[f] != next.must_differ;
-        if (seen[g] && turn[g] != wanted) return {};
-        if (seen[g]) continue;
-        seen[g] = true;
-        turn[g] = wanted;
+        const bool wanted = winding.turn[f] != next.must_differ;
+        if (winding.patch[g] >= 0) {
+          winding.one_sided = winding.one_sided || winding.turn[g] != wanted;
+          continue;
+        }
+        winding.patch[g] = winding.patches;
+        winding.turn[g] = wanted;
         queue.push_back(g);
       }
     }
+    ++winding.patches;
   }
-  return turn;
+  return winding;
 }
 
-double signed_volume(const Points& points, const Faces& faces) {
-  double six = 0.0;
+struct Extent {
+  std::vector<double> volume;  ///< of each patch, seen from the middle of the mesh
+  double area = 0.0;
+};
+
+Extent measure(const Points& points, const Faces& faces, const Winding& winding) {
+  // From the middle, not the origin: far away the sum would be rounding alone.
+  const Eigen::RowVector3d middle =
+      0.5 * (points.colwise().minCoeff() + points.colwise().maxCoeff());
+  Extent extent{std::vector<double>(static_cast<std::size_t>(winding.patches), 0.0)};
   for (Index f = 0; f < faces.rows(); ++f) {
-    const Eigen::RowVector3d a = points.row(faces(f, 0));
-    const Eigen::RowVector3d b = points.row(faces(f, 1));
-    six += a.cross(b).dot(points.row(faces(f, 2)));
+    const Eigen::RowVector3d a = points.row(faces(f, 0)) - middle;
+    const Eigen::RowVector3d b = points.row(faces(f, 1)) - middle;
+    const Eigen::RowVector3d c = points.row(faces(f, 2)) - middle;
+    const auto patch = static_cast<std::size_t>(winding.patch[static_cast<std::size_t>(f)]);
+    extent.volume[patch] += a.cross(b).dot(c) / 6.0;
+    extent.area += 0.5 * (b - a).cross(c - a).norm();
   }
-  return six / 6.0;
+  return extent;
 }
 
 }  // namespace
 
 OrientedFaces orient_outward(const TriangleMesh& mesh) {
-  OrientedFaces result{mesh.faces, Orientation::unknown};
-  const auto neighbours = closed_manifold_neighbours(mesh.faces);
-  if (neighbours.empty()) return result;
-  const std::vector<bool> turn = faces_to_turn(neighbours);
-  if (turn.empty()) return result;
-  Faces faces = mesh.faces;
-  for (Index f = 0; f < faces.rows(); ++f) {
-    if (turn[static_cast<std::size_t>(f)]) std::swap(faces(f, 1), faces(f, 2));
+  OrientedFaces result{mesh.faces, Orientation::none};
+  const Adjacency adjacency = adjacency_of(mesh.faces);
+  const Winding winding = wind(adjacency);
+  if (winding.one_sided || mesh.faces.rows() == 0) return result;
+  for (Index f = 0; f < mesh.faces.rows(); ++f) {
+    if (winding.turn[static_cast<std::size_t>(f)]) {
+      std::swap(result.faces(f, 1), result.faces(f, 2));
+    }
   }
-  if (signed_volume(mesh.vertices, faces) < 0.0) faces.col(1).swap(faces.col(2));
-  result.faces = std::move(faces);
-  result.orientation = Orientation::outward;
+  const Extent extent = measure(mesh.vertices, result.faces, winding);
+  const double rounding = 1e-9 * std::pow(extent.area, 1.5);
+  double volume = 0.0;
+  for (Index f = 0; f < mesh.faces.rows(); ++f) {
+    const auto patch = static_cast<std::size_t>(winding.patch[static_cast<std::size_t>(f)]);
+    if (extent.volume[patch] < -rounding) std::swap(result.faces(f, 1), result.faces(f, 2));
+  }
+  for (const double part : extent.volume) volume += std::abs(part);
+  constexpr double kMostOpen = 0.02;
+  constexpr double kLeastVolume = 1e-3;  // of area^1.5; a ball has 0.094
+  const bool has_inside =
+      adjacency.open_share <= kMostOpen && volume > kLeastVolume * std::pow(extent.area, 1.5);
+  result.orientation = has_inside ? Orientation::outward : Orientation::consistent;
   return result;
 }
 

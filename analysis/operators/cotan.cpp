@@ -19,44 +19,46 @@ struct IntrinsicFace {
   std::array<double, 3> length{};  ///< length[c] lies opposite corner[c]
 };
 
-// Positions near 1, so that no product over- or underflows: divided by 2^exponent,
-// which costs no digit, and taken from the centre of the box.
-struct ScaledPoints {
-  Points points;
+void require_sound(const TriangleMesh& mesh) {
+  const Index n = mesh.vertices.rows();
+  for (Index v = 0; v < n; ++v) {
+    if (mesh.vertices.row(v).allFinite()) continue;
+    throw Error(ErrorKind::bad_input, "", "vertex " + std::to_string(v),
+                "coordinate is not finite");
+  }
+  for (Index f = 0; f < mesh.faces.rows(); ++f) {
+    for (const std::int32_t corner : mesh.faces.row(f)) {
+      if (corner >= 0 && corner < n) continue;
+      throw Error(ErrorKind::bad_input, "", "face " + std::to_string(f),
+                  "index " + std::to_string(corner) + " is out of range, the mesh has " +
+                      std::to_string(n) + " vertices");
+    }
+  }
+}
+
+// Lengths in units of 2^exponent. A power of two costs no digit, and differences of
+// coordinates are taken first: neither an extreme unit nor a far origin is felt.
+struct ScaledLengths {
+  Points lengths;
   int exponent = 0;
 };
 
-ScaledPoints scale_points(const Points& vertices) {
-  ScaledPoints scaled;
-  const double largest = vertices.size() > 0 ? vertices.cwiseAbs().maxCoeff() : 0.0;
-  if (largest == 0.0) {
-    scaled.points = vertices;
-    return scaled;
+ScaledLengths edge_lengths(const TriangleMesh& mesh) {
+  double largest = 0.0;  // of vertices in use: one that is not must not set the unit
+  for (const std::int32_t v : mesh.faces.reshaped()) {
+    largest = std::max(largest, mesh.vertices.row(v).cwiseAbs().maxCoeff());
   }
-  const int far = std::ilogb(largest);
-  const auto shrink = [](int exponent) {
-    return [exponent](double x) { return std::ldexp(x, -exponent); };
-  };
-  Points points = vertices.unaryExpr(shrink(far));
-  const Eigen::RowVector3d low = points.colwise().minCoeff();
-  const Eigen::RowVector3d high = points.colwise().maxCoeff();
-  points.rowwise() -= 0.5 * (low + high);
-  const double extent = (high - low).maxCoeff();
-  const int near = extent > 0.0 ? std::ilogb(extent) : 0;
-  scaled.points = points.unaryExpr(shrink(near));
-  scaled.exponent = far + near;
-  return scaled;
-}
-
-Points edge_lengths(const Faces& faces, const Points& points) {
-  Points lengths(faces.rows(), 3);
-  for (Index f = 0; f < faces.rows(); ++f) {
+  ScaledLengths scaled{Points(mesh.faces.rows(), 3), largest > 0.0 ? std::ilogb(largest) : 0};
+  const int exponent = scaled.exponent;
+  const Points points =
+      mesh.vertices.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+  for (Index f = 0; f < mesh.faces.rows(); ++f) {
     for (int c = 0; c < 3; ++c) {
-      lengths(f, c) =
-          (points.row(faces(f, (c + 1) % 3)) - points.row(faces(f, (c + 2) % 3))).norm();
+      scaled.lengths(f, c) =
+          (points.row(mesh.faces(f, (c + 1) % 3)) - points.row(mesh.faces(f, (c + 2) % 3))).norm();
     }
   }
-  return lengths;
+  return scaled;
 }
 
 // Faces with a repeated corner are no part of a surface.
@@ -109,41 +111,6 @@ std::vector<std::int32_t> label_components(const std::vector<IntrinsicFace>& fac
   return label;
 }
 
-// Adds to all lengths of a component what its thinnest triangle needs to keep its slack.
-// All lengths, because raising some would break the inequality in others; by component,
-// because a small one beside a large one has a unit of length of its own.
-double mollify(std::vector<IntrinsicFace>& faces, const std::vector<std::int32_t>& component,
-               double relative_slack) {
-  const auto count =
-      static_cast<std::size_t>(1 + *std::max_element(component.begin(), component.end()));
-  const auto of = [&](const IntrinsicFace& face) {
-    return static_cast<std::size_t>(component[static_cast<std::size_t>(face.corner[0])]);
-  };
-  std::vector<double> mean(count, 0.0);
-  std::vector<double> edges(count, 0.0);
-  for (const IntrinsicFace& face : faces) {
-    mean[of(face)] += face.length[0] + face.length[1] + face.length[2];
-    edges[of(face)] += 3.0;
-  }
-  for (std::size_t c = 0; c < count; ++c) {
-    mean[c] /= edges[c];
-    if (mean[c] > 0.0) continue;
-    throw Error(
-        ErrorKind::bad_input, "", "faces",
-        "no face of component " + std::to_string(c) + " has area; a Laplacian needs at least one");
-  }
-  std::vector<double> raise(count, 0.0);
-  for (const IntrinsicFace& face : faces) {
-    const double longest = std::max({face.length[0], face.length[1], face.length[2]});
-    const double others = face.length[0] + face.length[1] + face.length[2] - longest;
-    raise[of(face)] = std::max(raise[of(face)], relative_slack * mean[of(face)] + longest - others);
-  }
-  for (IntrinsicFace& face : faces) {
-    for (double& length : face.length) length += raise[of(face)];
-  }
-  return *std::max_element(raise.begin(), raise.end());
-}
-
 // Heron's formula in Kahan's order, which keeps its digits on needles.
 double triangle_area(std::array<double, 3> length) {
   std::sort(length.begin(), length.end(), std::greater<>());
@@ -152,18 +119,86 @@ double triangle_area(std::array<double, 3> length) {
   return 0.25 * std::sqrt(std::max(product, 0.0));
 }
 
+// A connected component and its own unit of length: one far smaller than another
+// neither underflows beside it nor is mollified by the other's measure.
+struct ComponentScale {
+  int exponent = 0;  ///< lengths here count in units of 2^exponent
+  double mean_length = 0.0;
+  double edges = 0.0;
+  double area = 0.0;
+  double raise = 0.0;  ///< added to each length
+};
+
+std::vector<ComponentScale> scale_components(std::vector<IntrinsicFace>& faces,
+                                             const std::vector<std::int32_t>& component) {
+  std::vector<ComponentScale> scales(
+      static_cast<std::size_t>(1 + *std::max_element(component.begin(), component.end())));
+  const auto of = [&](const IntrinsicFace& face) -> ComponentScale& {
+    return scales[static_cast<std::size_t>(component[static_cast<std::size_t>(face.corner[0])])];
+  };
+  std::vector<double> longest(scales.size(), 0.0);
+  for (const IntrinsicFace& face : faces) {
+    double& own = longest[static_cast<std::size_t>(&of(face) - scales.data())];
+    own = std::max({own, face.length[0], face.length[1], face.length[2]});
+  }
+  for (std::size_t c = 0; c < scales.size(); ++c) {
+    if (longest[c] > 0.0) scales[c].exponent = std::ilogb(longest[c]);
+  }
+  for (IntrinsicFace& face : faces) {
+    ComponentScale& own = of(face);
+    for (double& length : face.length) {
+      length = std::ldexp(length, -own.exponent);
+      own.mean_length += length;
+      own.edges += 1.0;
+    }
+    own.area += triangle_area(face.length);
+  }
+  for (std::size_t c = 0; c < scales.size(); ++c) {
+    scales[c].mean_length /= scales[c].edges;
+    if (scales[c].area > 0.0) continue;
+    throw Error(
+        ErrorKind::bad_input, "", "faces",
+        "no face of component " + std::to_string(c) + " has area; a Laplacian needs at least one");
+  }
+  return scales;
+}
+
+// Adds to all lengths of a component what its thinnest triangle needs to keep its slack.
+// All lengths, because raising some would break the inequality in others.
+void mollify(std::vector<IntrinsicFace>& faces, const std::vector<std::int32_t>& component,
+             double relative_slack, std::vector<ComponentScale>& scales) {
+  const auto of = [&](const IntrinsicFace& face) -> ComponentScale& {
+    return scales[static_cast<std::size_t>(component[static_cast<std::size_t>(face.corner[0])])];
+  };
+  for (const IntrinsicFace& face : faces) {
+    ComponentScale& own = of(face);
+    const double longest = std::max({face.length[0], face.length[1], face.length[2]});
+    const double others = face.length[0] + face.length[1] + face.length[2] - longest;
+    own.raise = std::max(own.raise, relative_slack * own.mean_length + longest - others);
+  }
+  for (IntrinsicFace& face : faces) {
+    for (double& length : face.length) length += of(face).raise;
+  }
+}
+
 struct Assembly {
   std::vector<Triplet> weights;     ///< (i < j, half the cotangents)
   std::vector<Triplet> mass_pairs;  ///< (i < j), consistent mass only
   Eigen::VectorXd lumped;
 };
 
-Assembly assemble(const std::vector<IntrinsicFace>& faces, Index vertices, MassKind mass) {
+// @param exponent  lengths of component c count in units of 2^(scales[c].exponent + exponent)
+Assembly assemble(const std::vector<IntrinsicFace>& faces, const Operator& op,
+                  const std::vector<ComponentScale>& scales, int exponent, MassKind mass) {
+  const auto vertices = static_cast<Index>(op.component.size());
   Assembly sums;
   sums.lumped = Eigen::VectorXd::Zero(vertices);
   sums.weights.reserve(3 * faces.size());
   for (const IntrinsicFace& face : faces) {
     const double area = triangle_area(face.length);
+    const auto component =
+        static_cast<std::size_t>(op.component[static_cast<std::size_t>(face.corner[0])]);
+    const double true_area = std::ldexp(area, 2 * (scales[component].exponent + exponent));
     for (std::size_t c = 0; c < 3; ++c) {
       const double opposite = face.length[c];
       const double left = face.length[(c + 1) % 3];
@@ -172,8 +207,8 @@ Assembly assemble(const std::vector<IntrinsicFace>& faces, Index vertices, MassK
           ((left - opposite) * (left + opposite) + right * right) / (4.0 * area);
       const auto [i, j] = std::minmax(face.corner[(c + 1) % 3], face.corner[(c + 2) % 3]);
       sums.weights.emplace_back(i, j, 0.5 * cotangent);
-      if (mass == MassKind::consistent) sums.mass_pairs.emplace_back(i, j, area / 12.0);
-      sums.lumped[face.corner[c]] += area / 3.0;
+      if (mass == MassKind::consistent) sums.mass_pairs.emplace_back(i, j, true_area / 12.0);
+      sums.lumped[face.corner[c]] += true_area / 3.0;
     }
   }
   return sums;
@@ -212,41 +247,52 @@ SparseMatrix mass_of(const Assembly& sums, MassKind kind, Index n) {
   return mass;
 }
 
+void require_areas(const Operator& op) {
+  for (Index c = 0; c < op.component_area.size(); ++c) {
+    // Vertices share the area, and the solver divides by it.
+    if (op.component_area[c] > 1e-280 && op.component_area[c] < 1e280) continue;
+    throw Error(ErrorKind::bad_input, "", "component " + std::to_string(c),
+                "its area is beyond the range of a double; scale the mesh to a unit of length "
+                "nearer to its size");
+  }
+}
+
 // @param exponent  lengths count in units of 2^exponent
 Operator build(std::vector<IntrinsicFace> faces, Index n, int exponent,
                const OperatorOptions& options) {
+  if (!(options.mollification >= 0.0)) {
+    throw Error(ErrorKind::bad_request, "", "mollification", "must be 0 or more");
+  }
   Operator op;
   op.component = label_components(faces, n);
-  const double raised = mollify(faces, op.component, options.mollification);
-  const Assembly sums = assemble(faces, n, options.mass);
+  std::vector<ComponentScale> scales = scale_components(faces, op.component);
+  mollify(faces, op.component, options.mollification, scales);
+  const Assembly sums = assemble(faces, op, scales, exponent, options.mass);
   op.kind = options.kind;
   op.mass_kind = options.mass;
-  op.mollified_by = std::ldexp(raised, exponent);
-  op.stiffness = stiffness_of(sums.weights, n);
-  const double unit = std::ldexp(1.0, 2 * exponent);
-  op.mass = mass_of(sums, options.mass, n) * unit;
-  op.lumped_mass = sums.lumped * unit;
-  if (!op.lumped_mass.allFinite() || !(op.lumped_mass.maxCoeff() > 1e-290)) {
-    throw Error(ErrorKind::bad_input, "", "vertices",
-                "the area is beyond the range of a double; scale the mesh to a unit of length "
-                "nearer to its size");
+  for (const ComponentScale& scale : scales) {
+    op.mollified_by = std::max(op.mollified_by, std::ldexp(scale.raise, scale.exponent + exponent));
   }
-  const auto components = *std::max_element(op.component.begin(), op.component.end()) + 1;
-  op.component_area = Eigen::VectorXd::Zero(components);
+  op.stiffness = stiffness_of(sums.weights, n);
+  op.mass = mass_of(sums, options.mass, n);
+  op.lumped_mass = sums.lumped;
+  op.component_area = Eigen::VectorXd::Zero(static_cast<Index>(scales.size()));
   for (Index v = 0; v < n; ++v) {
     const std::int32_t c = op.component[static_cast<std::size_t>(v)];
     if (c >= 0) op.component_area[c] += op.lumped_mass[v];
   }
   op.area = op.component_area.sum();
+  require_areas(op);
   return op;
 }
 
 }  // namespace
 
 Operator compute_operator(const TriangleMesh& mesh, const OperatorOptions& options) {
-  const ScaledPoints scaled = scale_points(mesh.vertices);
-  return build(intrinsic_faces(mesh.faces, edge_lengths(mesh.faces, scaled.points)),
-               mesh.vertices.rows(), scaled.exponent, options);
+  require_sound(mesh);
+  const ScaledLengths scaled = edge_lengths(mesh);
+  return build(intrinsic_faces(mesh.faces, scaled.lengths), mesh.vertices.rows(), scaled.exponent,
+               options);
 }
 
 Operator compute_operator(const Faces& faces, const Points& lengths, Index vertices,

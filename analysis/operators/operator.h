@@ -41,11 +41,13 @@ struct Operator {
 
 /// Assembles stiffness and mass.
 ///
-/// Triangles with a repeated corner are left out. Positions are taken relative to
-/// the centre of the bounding box and divided by a power of two, so neither a far
-/// origin nor an extreme unit of length costs digits.
+/// Triangles with a repeated corner are left out. Only differences of positions count,
+/// divided by a power of two of each component's own: neither a far origin nor an extreme
+/// or uneven unit of length costs digits.
 ///
-/// @throws Error  bad_input if a component has no area at all, or an area overflows
+/// @throws Error  bad_input for a corner that is no vertex or a coordinate that is not
+///                finite, if a component has no area at all, or one beyond a double's
+///                range; bad_request for negative mollification
 /// @see Pinkall and Polthier 1993; Sharp and Crane 2020, section 4.5 (mollification)
 [[nodiscard]] Operator compute_operator(const TriangleMesh& mesh,
                                         const OperatorOptions& options = {});

@@ -51,10 +51,10 @@ class EigenFactorization final : public Factorization::Impl {
 
 std::int64_t count_negative_by_eigen(const Matrix& matrix) {
   const Eigen::SimplicialLDLT<Matrix> factor(matrix);
-  if (factor.info() != Eigen::Success) fail("a pivot is 0: the shift is an eigenvalue");
+  if (factor.info() != Eigen::Success) fail("a pivot is 0 at this shift");
   const Eigen::VectorXd pivots = factor.vectorD();
   if (is_singular(pivots.cwiseAbs().minCoeff(), pivots.cwiseAbs().maxCoeff())) {
-    fail("a pivot is 0 to rounding: the shift is an eigenvalue");
+    fail("a pivot is 0 to rounding at this shift");
   }
   return (pivots.array() < 0.0).count();
 }
@@ -155,7 +155,7 @@ class CholmodFactorization final : public Factorization::Impl {
 
 std::int64_t count_negative_by_cholmod(const Matrix& matrix) {
   const CholmodFactor held(matrix, true);
-  if (!held.complete()) fail("a pivot is 0: the shift is an eigenvalue");
+  if (!held.complete()) fail("a pivot is 0 at this shift");
   const auto* const start = static_cast<const int*>(held.factor_->p);
   const auto* const values = static_cast<const double*>(held.factor_->x);
   std::int64_t negative = 0;
@@ -167,7 +167,7 @@ std::int64_t count_negative_by_cholmod(const Matrix& matrix) {
     least = std::min(least, std::abs(pivot));
     largest = std::max(largest, std::abs(pivot));
   }
-  if (is_singular(least, largest)) fail("a pivot is 0 to rounding: the shift is an eigenvalue");
+  if (is_singular(least, largest)) fail("a pivot is 0 to rounding at this shift");
   return negative;
 }
 

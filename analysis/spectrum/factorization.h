@@ -40,7 +40,7 @@ class Factorization {
 /// pivots of its LDL^T, by Sylvester's law of inertia. For `W - s M` that is the
 /// number of eigenvalues of the pencil below s.
 ///
-/// @throws Error  not_converged if a pivot is 0 to rounding: s is an eigenvalue
+/// @throws Error  not_converged if a pivot is 0 to rounding, as when s is an eigenvalue
 [[nodiscard]] std::int64_t count_negative_eigenvalues(
     const Eigen::SparseMatrix<double>& matrix,
     FactorizationBackend backend = FactorizationBackend::automatic);

@@ -125,8 +125,9 @@ TEST_F(MatchOfALump, RecognisesAMirrorImage) {
 TEST(Match, SaysThatAnOpenSurfaceHasNoLeftAndRight) {
   TriangleMesh open = make_lump(10);
   open.faces.conservativeResize(open.faces.rows() - 40, 3);
+  open.faces.conservativeResize(open.faces.rows() / 2, 3);
   const MatchSurface s = prepare_surface(open, kSmall);
-  EXPECT_EQ(s.orientation, Orientation::unknown);
+  EXPECT_EQ(s.orientation, Orientation::consistent);
   const MatchResult result = match(s, s);
   EXPECT_EQ(result.verdict, Verdict::ambiguous);
   EXPECT_EQ(result.solutions[0].orientation, MapOrientation::unknown);
@@ -138,20 +139,60 @@ TEST(Match, DoesNotClaimToMapASphere) {
   EXPECT_NE(match(s, prepare_surface(other, kSmall)).verdict, Verdict::clear);
 }
 
-TEST(Match, LeavesOtherComponentsUnmatched) {
-  TriangleMesh mesh = make_lump(8);
-  const Eigen::Index n = mesh.vertices.rows();
-  mesh.vertices.conservativeResize(n + 1, 3);
-  mesh.vertices.row(n).setConstant(9.0);
+TEST(Match, LeavesOtherComponentsAndUnusedVerticesUnmatched) {
+  const TriangleMesh lump = make_lump(8);
+  const TriangleMesh small = make_sphere(2);
+  const Eigen::Index n = lump.vertices.rows();
+  const Eigen::Index k = small.vertices.rows();
+  TriangleMesh mesh;
+  mesh.vertices.resize(n + k + 1, 3);
+  mesh.vertices << lump.vertices, 0.05 * small.vertices, Eigen::RowVector3d::Constant(9.0);
+  mesh.faces.resize(lump.faces.rows() + small.faces.rows(), 3);
+  mesh.faces << lump.faces, (small.faces.array() + static_cast<std::int32_t>(n)).matrix();
   const MatchSurface s = prepare_surface(mesh, kSmall);
   const MatchResult result = match(s, s);
-  EXPECT_EQ(result.ab.size(), static_cast<std::size_t>(n + 1));
-  EXPECT_EQ(result.ab.back(), -1);
+  ASSERT_EQ(result.ab.size(), static_cast<std::size_t>(n + k + 1));
+  EXPECT_GE(*std::min_element(result.ab.begin(), result.ab.begin() + n), 0);
+  EXPECT_EQ(*std::max_element(result.ab.begin() + n, result.ab.end()), -1);
+}
+
+TEST(Match, DoesNotFeelAFarOriginOrTheWindingOfFaces) {
+  const TriangleMesh mesh = make_lump(8);
+  const MatchSurface here = prepare_surface(mesh, kSmall);
+  TriangleMesh there = mesh;
+  there.vertices.array() += 1e6;
+  for (Eigen::Index f = 0; f < there.faces.rows(); f += 3) {
+    std::swap(there.faces(f, 1), there.faces(f, 2));
+  }
+  std::vector<std::int32_t> same(static_cast<std::size_t>(mesh.vertices.rows()));
+  std::iota(same.begin(), same.end(), 0);
+  const MatchResult result = match(here, prepare_surface(there, kSmall));
+  EXPECT_EQ(result.verdict, Verdict::clear) << result.reason;
+  EXPECT_LT(error_of(result.ab, same, here), 1e-3);
+}
+
+TEST(Match, RefusesOptionsThatMakeNoSense) {
+  const TriangleMesh mesh = make_lump(4);
+  EXPECT_THROW((void)prepare_surface(mesh, {.eigenpairs = 1}), Error);
+  EXPECT_THROW((void)prepare_surface(mesh, {.geodesic_samples = 0}), Error);
+  EXPECT_THROW((void)prepare_surface(mesh, {.tensor_size = -1}), Error);
+  const MatchSurface s = prepare_surface(mesh, {.eigenpairs = 40});
+  try {
+    (void)match(s, s, {.rivals = 0});
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "rivals: is 0; at least 1 is needed");
+  }
 }
 
 TEST(Match, StopsWhenToldTo) {
   const MatchSurface s = prepare_surface(make_lump(6), {.eigenpairs = 60});
-  EXPECT_THROW((void)match(s, s, {.progress = [](const ProgressStep&) { return false; }}), Error);
+  try {
+    (void)match(s, s, {.progress = [](const ProgressStep&) { return false; }});
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+  }
 }
 
 }  // namespace

@@ -190,7 +190,9 @@ bool solve_lowest(Component& component, Index count, const ComponentSolveOptions
   const Index n = component.size();
   count = std::min(count, n);
   if (n <= kDenseSize || count > n / 4) {
+    if (options.on_solve) options.on_solve();
     solve_dense(component, count);
+    if (options.on_solve) options.on_solve();
   } else {
     Pairs found;
     if (!run_lanczos(component, count, nullptr, options, found)) return false;

@@ -96,6 +96,53 @@ TEST(ComputeOperator, NumbersComponentsByTheirFirstVertex) {
   EXPECT_NEAR(op.component_area[1], 24.0, 1e-13);
 }
 
+TEST(ComputeOperator, DoesNotFeelAnUnusedVertexFarAway) {
+  TriangleMesh mesh = make_ellipsoid(1.0, 0.7, 2.0, 4);
+  const MatrixXd before = compute_operator(mesh).stiffness;
+  for (const double far : {1e12, 1e17, 1e300}) {
+    TriangleMesh with = mesh;
+    with.vertices.conservativeResize(mesh.vertices.rows() + 1, 3);
+    with.vertices.bottomRows(1).setConstant(far);
+    const MatrixXd after = compute_operator(with).stiffness;
+    EXPECT_LT((after.topLeftCorner(before.rows(), before.cols()) - before).norm(), 1e-12) << far;
+  }
+}
+
+TEST(ComputeOperator, SolvesATinyComponentBesideAHugeOne) {
+  const TriangleMesh one = make_ellipsoid(1.0, 0.7, 2.0, 3);
+  const Eigen::Index n = one.vertices.rows();
+  TriangleMesh both;
+  both.vertices.resize(2 * n, 3);
+  both.vertices << one.vertices * 1e80, one.vertices * 1e-20;
+  both.faces.resize(2 * one.faces.rows(), 3);
+  both.faces << one.faces, (one.faces.array() + static_cast<std::int32_t>(n)).matrix();
+  const Operator op = compute_operator(both);
+  const MatrixXd W = op.stiffness;
+  EXPECT_LT((W.topLeftCorner(n, n) - W.bottomRightCorner(n, n)).norm(), 1e-11);
+  EXPECT_NEAR(op.component_area[1] * 1e40 / (op.component_area[0] * 1e-160), 1.0, 1e-12);
+}
+
+TEST(ComputeOperator, NamesTheFaceOrVertexThatIsWrong) {
+  const auto message = [](const TriangleMesh& mesh) -> std::string {
+    try {
+      (void)compute_operator(mesh);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no exception";
+  };
+  TriangleMesh mesh = right_triangle();
+  mesh.faces(0, 2) = 3;
+  EXPECT_EQ(message(mesh), "face 0: index 3 is out of range, the mesh has 3 vertices");
+  mesh = right_triangle();
+  mesh.vertices(1, 1) = std::nan("");
+  EXPECT_EQ(message(mesh), "vertex 1: coordinate is not finite");
+  mesh = right_triangle();
+  mesh.vertices.row(2) = 0.5 * (mesh.vertices.row(0) + mesh.vertices.row(1));
+  EXPECT_EQ(message(mesh),
+            "faces: no face of component 0 has area; a Laplacian needs at least one");
+}
+
 TEST(ComputeOperator, RefusesAMeshWithoutArea) {
   TriangleMesh mesh = right_triangle();
   mesh.vertices.setConstant(7.0);

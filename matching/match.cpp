@@ -21,9 +21,8 @@ constexpr std::array kDenseSteps = {DenseStep{100, 2.0, 0.005, 40}, DenseStep{12
                                     DenseStep{200, 2.0, 0.005, 150}};
 constexpr double kCloseEnergy = 0.25;  // closer than this: compare after dense refinement
 constexpr double kMirrorPenalty = 2.0;
-// Low frequencies of a sphere or a cup fit in every rotation alike; rivals of a body with
-// limbs differ by ten times this and more.
-constexpr double kSameScore = 1e-3;
+// A generic shape has simple eigenvalues; a group of rotations makes most of them multiple.
+constexpr double kRepeated = 0.6;
 constexpr double kDoubtEnergy = 0.1;  // closer than this: say so
 
 struct Rival {
@@ -187,7 +186,6 @@ class Matcher {
                              : rival.candidate.orientation > 0 ? MapOrientation::direct
                                                                : MapOrientation::mirrored;
       solution.energies = rival.energies;
-      solution.search_score = rival.candidate.score();
       solution.coverage = rival.energies.coverage;
       solution.confidence = std::exp((rivals[0].energy - rival.energy) / kDoubtEnergy);
       total += solution.confidence;
@@ -227,19 +225,27 @@ class Matcher {
     } else if (!oriented_) {
       result.verdict = Verdict::ambiguous;
       result.reason = "a shape is open or one-sided: left and right cannot be told apart";
-    } else if (std::any_of(result.solutions.begin() + 1, result.solutions.end(),
-                           [&](const MatchSolution& other) {
-                             return other.orientation == best.orientation &&
-                                    other.search_score > best.search_score - kSameScore;
-                           })) {
+    } else if (repeated_share(a_) > kRepeated || repeated_share(b_) > kRepeated) {
       result.verdict = Verdict::ambiguous;
-      result.reason = "the shapes fit each other in several ways: they have a symmetry";
+      result.reason = "eigenvalues come in groups: a shape can be turned onto itself";
     } else if (second != result.solutions.end() && second->energy - best.energy < kDoubtEnergy) {
       result.verdict = Verdict::ambiguous;
       result.reason = "another map is nearly as good";
     } else {
       result.verdict = Verdict::clear;
     }
+  }
+
+  // Share of the low eigenvalues that have another within a hundredth.
+  static double repeated_share(const MatchSurface& s) {
+    const Index count = std::min<Index>(20, s.values.size() - 2);
+    Index repeated = 0;
+    for (Index i = 1; i <= count; ++i) {
+      const bool below = i > 1 && s.values[i] < 1.01 * s.values[i - 1];
+      const bool above = s.values[i + 1] < 1.01 * s.values[i];
+      if (below || above) ++repeated;
+    }
+    return static_cast<double>(repeated) / static_cast<double>(count);
   }
 
   const MatchSurface& a_;

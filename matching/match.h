@@ -30,10 +30,9 @@ struct MatchSolution {
   /// a mirrored map: poses of a left-right symmetric body fit it as well as the right one.
   double energy = 0.0;
   MapOrientation orientation = MapOrientation::unknown;
-  double coverage = 0.0;      ///< share of both areas that is hit
-  double confidence = 0.0;    ///< share among the solutions by energy; not calibrated
-  MapEnergies energies;       ///< on samples
-  double search_score = 0.0;  ///< of the candidate it came from; 2 for an isometry
+  double coverage = 0.0;    ///< share of both areas that is hit
+  double confidence = 0.0;  ///< share among the solutions by energy; not calibrated
+  MapEnergies energies;     ///< on samples
   FunctionalMaps functional;
 };
 

@@ -1,7 +1,9 @@
 #include "timbre/cli/command.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -11,6 +13,7 @@
 #include <memory>
 #include <system_error>
 
+#include "timbre/analysis/core/byte_source.h"
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/output_file.h"
 
@@ -26,16 +29,19 @@ void on_interrupt(int) {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-void write_all(int descriptor, std::string_view bytes, const char* name) {
+// 0, or the number of the error that stopped it.
+int write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      throw Error(ErrorKind::io, "", name, std::generic_category().message(errno));
-    }
+    if (written < 0) return errno;
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
+  return 0;
 }
+
+// Words beside the result: that nobody can hear them is no reason to fail.
+void tell(std::string_view text) { (void)write_all(STDERR_FILENO, text); }
 
 std::string duration(double seconds) {
   const auto whole = std::lround(seconds);
@@ -56,7 +62,7 @@ class TerminalProgress {
     const double passed = std::chrono::duration<double>(now - start_).count();
     const bool over = step.total > 0 && step.done >= step.total;
     if (over && shown_) {
-      write("\r\x1b[K");
+      tell("\r\x1b[K");
       shown_ = false;
     } else if (!over && passed > 1.0) {
       std::string line = "\r\x1b[K" + step.phase + " " + std::to_string(step.done);
@@ -66,22 +72,17 @@ class TerminalProgress {
         line +=
             ", " + duration(passed * static_cast<double>(step.total - step.done) / done) + " left";
       }
-      write(line);
+      tell(line);
       shown_ = true;
     }
     return !interrupted();
   }
 
   ~TerminalProgress() {
-    if (shown_) write("\r\x1b[K");
+    if (shown_) tell("\r\x1b[K");
   }
 
  private:
-  static void write(const std::string& text) {
-    // A progress line that cannot be shown is no reason to fail.
-    [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, text.data(), text.size());
-  }
-
   std::string phase_;
   std::chrono::steady_clock::time_point start_;
   bool shown_ = false;
@@ -97,15 +98,29 @@ bool stderr_is_a_terminal() {
 void Context::answer(nlohmann::json document, std::string_view text) const {
   if (json) {
     document["schema"] = 1;
-    write_all(STDOUT_FILENO, document.dump() + "\n", "standard output");
+    // File names need not be UTF-8; JSON must.
+    print(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  } else if (output != "-") {
+    print(text);
   } else {
-    write_all(STDOUT_FILENO, text, "standard output");
+    for (std::size_t end = 0; !text.empty(); text.remove_prefix(end)) {
+      end = std::min(text.find('\n'), text.size() - 1) + 1;
+      note(std::string(text.substr(0, text[end - 1] == '\n' ? end - 1 : end)));
+    }
   }
+}
+
+void Context::require_output() const {
+  if (output == "-" && json) {
+    throw Error(ErrorKind::bad_request, "", "output",
+                "standard output cannot hold both the result and the JSON document; -o FILE");
+  }
+  if (!output.empty() && output != "-") require_writable(output, force);
 }
 
 void Context::write_result(const std::string& path, std::string_view bytes) const {
   if (path == "-") {
-    write_all(STDOUT_FILENO, bytes, "standard output");
+    print(bytes);
   } else {
     write_file(path, bytes, force);
   }
@@ -116,13 +131,12 @@ void Context::note(const std::string& line) const {
 }
 
 void Context::complain(const std::string& line) const {
-  write_all(STDERR_FILENO, "timbre: " + escape_control(line) + "\n", "standard error");
+  tell("timbre: " + escape_control(line) + "\n");
 }
 
 void Context::say(const std::string& line) const {
-  const bool to_stderr = json;
-  write_all(to_stderr ? STDERR_FILENO : STDOUT_FILENO, escape_control(line) + "\n",
-            to_stderr ? "standard error" : "standard output");
+  const std::string whole = escape_control(line) + "\n";
+  json ? tell(whole) : print(whole);
 }
 
 Progress Context::progress() const {
@@ -137,9 +151,6 @@ Progress Context::progress() const {
 void add_common_options(CLI::App& command, Context& context, bool output) {
   command.add_flag("--json", context.json, "one JSON document on standard output");
   command.add_flag("-q,--quiet", context.quiet, "no progress and no notes");
-  command.add_option("--threads", context.threads, "threads to use; 0: all cores")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
   if (output) {
     command.add_option("-o,--output", context.output,
                        "where the result goes; - for standard output");
@@ -147,10 +158,43 @@ void add_common_options(CLI::App& command, Context& context, bool output) {
   }
 }
 
+void add_threads_option(CLI::App& command, Context& context) {
+  command.add_option("--threads", context.threads, "threads to use; 0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+}
+
+void add_read_options(CLI::App& command, Context& context) {
+  command.add_flag("--soup", context.read.soup, "STL: keep the corners of all facets apart");
+  command.add_option("--size-limit", context.read.size_limit, "bytes; larger files are refused")
+      ->capture_default_str();
+}
+
+MeshFile read_mesh_file(const Context& context, const std::string& path) {
+  if (path != "-") return read_mesh(path, context.read);
+  const std::string bytes =
+      read_bytes(path, {.size_limit = context.read.size_limit, .stop = interrupted});
+  return read_mesh_bytes(bytes, path, context.read);
+}
+
 MeshFile load_mesh(const Context& context, const std::string& path) {
-  MeshFile file = read_mesh(path);
+  MeshFile file = read_mesh_file(context, path);
   for (const ReadWarning& warning : file.warnings) context.note(path + ": " + warning.message);
   return file;
+}
+
+void print(std::string_view text) {
+  const int code = write_all(STDOUT_FILENO, text);
+  if (code == 0 || code == EPIPE) return;
+  throw Error(ErrorKind::io, "", "standard output", std::generic_category().message(code));
+}
+
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest free number is taken: this one.
+    (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
 }
 
 void catch_interrupts() {
@@ -163,12 +207,5 @@ void catch_interrupts() {
 }
 
 bool interrupted() { return interrupt_seen != 0; }
-
-std::string utf8_or_replaced(std::string_view text) {
-  // dump() with this handler replaces invalid sequences; the quotes come off again.
-  const nlohmann::json value = std::string(text);
-  return nlohmann::json::parse(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
-      .get<std::string>();
-}
 
 }  // namespace timbre::cli

@@ -19,10 +19,15 @@ struct Context {
   bool force = false;  ///< results may replace existing files
   int threads = 0;     ///< 0: all cores
   std::string output;  ///< -o; empty: not given, "-": stdout
+  ReadOptions read;    ///< of every mesh the command reads
   int exit_code = 0;   ///< set by commands that finish in doubt or in part
 
-  /// Prints the command's one answer: `document` with --json, else `text`.
+  /// Prints the command's one answer: `document` with --json, else `text`. Where the result
+  /// itself went to standard output (-o -), the lines of `text` become notes.
   void answer(nlohmann::json document, std::string_view text) const;
+  /// To be called before any work: refuses a result file that cannot be written, and -o -
+  /// beside --json, which both want standard output.
+  void require_output() const;
   /// Writes a result file, or stdout for "-"; without --force an existing file is an error.
   void write_result(const std::string& path, std::string_view bytes) const;
   /// A line for a person on stderr, unless --quiet.
@@ -35,11 +40,22 @@ struct Context {
   [[nodiscard]] Progress progress() const;
 };
 
-/// Adds --json, -q, --threads; with `output`, also -o and --force.
+/// Adds --json and -q; with `output`, also -o and --force.
 void add_common_options(CLI::App& command, Context& context, bool output);
+/// Adds --threads, for commands whose work is shared out.
+void add_threads_option(CLI::App& command, Context& context);
+/// Adds --soup and --size-limit, for commands that read meshes.
+void add_read_options(CLI::App& command, Context& context);
 
-/// Reads a mesh and notes its warnings. `-` is standard input.
+/// Reads a mesh. `-` is standard input, which Ctrl-C leaves.
+[[nodiscard]] MeshFile read_mesh_file(const Context& context, const std::string& path);
+/// The same, and notes its warnings.
 [[nodiscard]] MeshFile load_mesh(const Context& context, const std::string& path);
+
+/// Writes to standard output. A reader that went away (`| head`) is no failure: what it
+/// does not want is dropped.
+/// @throws Error  io for every other failure
+void print(std::string_view text);
 
 /// Runs `work`; an error that names no file is told again with this one's name.
 template <typename Work>
@@ -52,12 +68,13 @@ auto for_file(const std::string& path, Work&& work) {
   }
 }
 
+/// Puts /dev/null, opened the wrong way round, in place of standard streams that are closed:
+/// no other file gets their numbers, and reading or writing them stays an error.
+void hold_standard_streams();
+
 /// Ctrl-C sets a flag, which `Context::progress` hands to running computations.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
-
-/// Text as valid UTF-8: JSON can hold nothing else, file names can.
-[[nodiscard]] std::string utf8_or_replaced(std::string_view text);
 
 // One function per command, in commands/: adds the subcommand and its callback.
 void add_dataset(CLI::App& timbre, Context& context);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -93,7 +94,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {
-    return app.exit(asked_for_help);
+    std::ostringstream text;
+    (void)app.exit(asked_for_help, text, text);
+    timbre::cli::print(text.str());
+    return 0;
   } catch (const CLI::ParseError& wrong) {
     return complain(timbre::escape_control(wrong.what()) + "; see timbre --help", 2);
   }
@@ -103,12 +107,11 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  timbre::cli::hold_standard_streams();
   timbre::cli::catch_interrupts();
   try {
     return run(argc, argv);
   } catch (const Error& error) {
-    // A reader that went away (`| head`) is no failure worth a word.
-    if (error.place() == "standard output" && error.cause() == "Broken pipe") return 0;
     return complain(error.what(), exit_code(error.kind()));
   } catch (const std::bad_alloc&) {
     return complain(

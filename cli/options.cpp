@@ -4,6 +4,7 @@
 #include <map>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/number_text.h"
 
 namespace timbre::cli {
 
@@ -16,6 +17,16 @@ void add_operator_options(CLI::App& command, OperatorOptions& options) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, MassKind>{
           {"lumped", MassKind::lumped}, {"consistent", MassKind::consistent}}))
       ->default_str(to_word(options.mass));
+}
+
+CLI::Validator number_between(double low, double high) {
+  const std::string range = to_text(low) + " to " + to_text(high);
+  const auto complaint = [low, high, range](const std::string& text) {
+    const std::optional<double> value = parse_double(text);
+    if (value && *value >= low && *value <= high) return std::string();
+    return "'" + text + "' is not in the range " + range;
+  };
+  return {complaint, range};
 }
 
 std::string array_format(const std::string& path) {

@@ -12,6 +12,9 @@ namespace timbre::cli {
 /// --operator and --mass.
 void add_operator_options(CLI::App& command, OperatorOptions& options);
 
+/// A number in [low, high], which messages show as people write them.
+[[nodiscard]] CLI::Validator number_between(double low, double high);
+
 /// What the ending of an output name asks for: "npz", "npy" or "txt".
 /// @throws Error  bad_request for another ending; "-" is text
 [[nodiscard]] std::string array_format(const std::string& path);

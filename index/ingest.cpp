@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "timbre/analysis/core/byte_source.h"
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/index/features.h"
@@ -88,18 +89,32 @@ std::string line_of(const Error& error, const std::string& path) {
   return error.file().empty() ? error.in_file(path).what() : error.what();
 }
 
-void read_and_solve(const IngestInput& input, const StoreParameters& parameters,
-                    const KnownContent& known, const Progress& progress, bool replace,
-                    Computed& computed) {
+// What compute() needs besides its input; the same for all.
+struct Task {
+  StoreParameters parameters;
+  const KnownContent& known;
+  const IngestOptions& options;
+  Progress keep_going;
+};
+
+// Waiting for standard input ends when the whole is stopped.
+MeshFile read(const std::string& path, const Task& task) {
+  if (path != "-") return read_mesh(path, task.options.read);
+  const std::string bytes = read_bytes(path, {.size_limit = task.options.read.size_limit,
+                                              .stop = [&] { return !task.keep_going({}); }});
+  return read_mesh_bytes(bytes, path, task.options.read);
+}
+
+void read_and_solve(const IngestInput& input, const Task& task, Computed& computed) {
   const std::string& name = computed.result.name;
   if (name.empty()) throw Error(ErrorKind::bad_input, "", "name", "is empty; --name gives one");
   require_storable_text(name, "name");
   require_storable_text(input.label, "label");
-  MeshFile file = read_mesh(input.path);
+  MeshFile file = read(input.path, task);
   computed.result.warnings = std::move(file.warnings);
-  const auto entry = known.find(name);
-  if (entry != known.end() && entry->second.first == content_of(file.mesh) &&
-      (!replace || entry->second.second == input.label)) {
+  const auto entry = task.known.find(name);
+  if (entry != task.known.end() && entry->second.first == content_of(file.mesh) &&
+      (!task.options.replace || entry->second.second == input.label)) {
     computed.result.outcome = AddOutcome::kept;
     if (!input.label.empty() && entry->second.second != input.label) {
       computed.result.warnings.push_back(
@@ -107,12 +122,12 @@ void read_and_solve(const IngestInput& input, const StoreParameters& parameters,
     }
     return;
   }
-  computed.record = compute_record(name, input.label, std::move(file.mesh), parameters, progress);
+  computed.record =
+      compute_record(name, input.label, std::move(file.mesh), task.parameters, task.keep_going);
   computed.solved = true;
 }
 
-Computed compute(const IngestInput& input, const StoreParameters& parameters,
-                 const KnownContent& known, const Progress& progress, bool replace) {
+Computed compute(const IngestInput& input, const Task& task) {
   Computed computed;
   computed.result.path = input.path;
   if (!input.name.empty()) {
@@ -121,7 +136,7 @@ Computed compute(const IngestInput& input, const StoreParameters& parameters,
     computed.result.name = shape_name_of(input.path);
   }
   try {
-    read_and_solve(input, parameters, known, progress, replace, computed);
+    read_and_solve(input, task, computed);
   } catch (const Error& error) {
     computed.result.error = line_of(error, input.path);
   } catch (const std::bad_alloc&) {
@@ -169,16 +184,15 @@ IngestSummary add_files(Store& store, const std::vector<IngestInput>& inputs,
   const SingleThreadedBlas blas;
   const int wanted = options.threads > 0 ? options.threads : hardware_threads();
   const int threads = static_cast<int>(std::min(inputs.size(), static_cast<std::size_t>(wanted)));
-  const StoreParameters parameters = store.parameters();
   std::atomic<bool> stop = false;
-  const Progress keep_going = [&stop](const ProgressStep&) { return !stop; };
+  const Task task{store.parameters(), known, options,
+                  [&stop](const ProgressStep&) { return !stop; }};
   struct StopOnLeaving {
     std::atomic<bool>& flag;
     ~StopOnLeaving() { flag = true; }
   };
-  OrderedPipeline pipeline(inputs.size(), threads, [&](std::size_t i) {
-    return compute(inputs[i], parameters, known, keep_going, options.replace);
-  });
+  OrderedPipeline pipeline(inputs.size(), threads,
+                           [&](std::size_t i) { return compute(inputs[i], task); });
   const StopOnLeaving stop_on_leaving{stop};
   ProgressReporter reporter(options.progress, "shapes", static_cast<std::int64_t>(inputs.size()));
   for (std::size_t done = 0; done < inputs.size();) {

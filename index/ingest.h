@@ -22,6 +22,7 @@ struct IngestOptions {
   bool replace = false;    ///< put other content or another label in place of what is there
   int threads = 0;         ///< meshes worked on at a time; 0: all cores
   Progress progress = {};  ///< counts inputs; may be empty
+  ReadOptions read = {};   ///< of the mesh files
 };
 
 struct IngestResult {

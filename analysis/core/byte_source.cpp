@@ -1,6 +1,7 @@
 #include "timbre/analysis/core/byte_source.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -46,12 +47,26 @@ class Descriptor {
   int number_;
 };
 
+// Waits until there is something to read, so that a pipe nobody writes to can be left. A signal
+// alone would not do: it may come just before read(), or to another thread.
+void wait_for_bytes(int descriptor, const std::string& path, const std::function<bool()>& stop) {
+  constexpr int kMilliseconds = 100;
+  for (;;) {
+    if (stop()) throw Error(ErrorKind::cancelled, path, "read", "stopped on request");
+    pollfd wanted{descriptor, POLLIN, 0};
+    const int ready = ::poll(&wanted, 1, kMilliseconds);
+    if (ready > 0 || (ready < 0 && errno != EINTR)) return;
+  }
+}
+
 // Appends up to `count` bytes; false when the end came before.
-bool append(std::string& bytes, int descriptor, std::size_t count, const std::string& path) {
+bool append(std::string& bytes, int descriptor, std::size_t count, const std::string& path,
+            const ByteSourceOptions& options) {
   const std::size_t start = bytes.size();
   bytes.resize(start + count);
   std::size_t got = 0;
   while (got < count) {
+    if (options.stop) wait_for_bytes(descriptor, path, options.stop);
     const ssize_t n = ::read(descriptor, bytes.data() + start + got, count - got);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail(path, "read");
@@ -62,14 +77,19 @@ bool append(std::string& bytes, int descriptor, std::size_t count, const std::st
   return got == count;
 }
 
-void append_all(std::string& bytes, int descriptor, std::uint64_t limit, const std::string& path) {
-  while (append(bytes, descriptor, kChunk, path)) {
-    if (bytes.size() > limit) refuse_size(path, limit);
+void append_all(std::string& bytes, int descriptor, const std::string& path,
+                const ByteSourceOptions& options) {
+  for (bool more = true; more;) {
+    more = append(bytes, descriptor, kChunk, path, options);
+    if (bytes.size() > options.size_limit) refuse_size(path, options.size_limit);
   }
-  if (bytes.size() > limit) refuse_size(path, limit);
 }
 
 std::string read_regular_file(const std::string& path, const ByteSourceOptions& options) {
+  // An empty name would drop out of the line of the error.
+  if (path.empty()) {
+    throw Error(ErrorKind::io, "''", "open", std::generic_category().message(ENOENT));
+  }
   const Descriptor file(path);
   struct stat status {};
   if (::fstat(file.number(), &status) != 0) fail(path, "open");
@@ -79,11 +99,11 @@ std::string read_regular_file(const std::string& path, const ByteSourceOptions& 
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > options.size_limit) refuse_size(path, options.size_limit);
   std::string bytes;
-  const bool more = append(bytes, file.number(), kHead, path);
+  const bool more = append(bytes, file.number(), kHead, path, options);
   if (options.inspect) options.inspect(bytes, std::max<std::uint64_t>(size, bytes.size()));
   if (!more) return bytes;
   bytes.reserve(static_cast<std::size_t>(size) + kChunk);
-  append_all(bytes, file.number(), options.size_limit, path);
+  append_all(bytes, file.number(), path, options);
   return bytes;
 }
 
@@ -133,7 +153,7 @@ class Inflater {
 std::string read_bytes(const std::string& path, const ByteSourceOptions& options) {
   if (path != "-") return read_regular_file(path, options);
   std::string bytes;
-  append_all(bytes, STDIN_FILENO, options.size_limit, path);
+  append_all(bytes, STDIN_FILENO, path, options);
   return bytes;
 }
 

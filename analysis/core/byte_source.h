@@ -12,13 +12,16 @@ struct ByteSourceOptions {
   /// Sees the first bytes (at most 4 KiB) and the size of the file before the rest is
   /// read, and throws if they cannot begin anything useful. Not called for standard input.
   std::function<void(std::string_view head, std::uint64_t size)> inspect = {};
+  /// Asked ten times a second while bytes are awaited; true ends the wait. May be empty.
+  std::function<bool()> stop = {};
 };
 
 /// All bytes of a regular file (links are followed), or of standard input for `-`.
 ///
 /// Never waits for a FIFO or a device: whatever is no regular file is refused. The file
 /// is copied, not mapped, so one that shrinks meanwhile is merely shorter.
-/// @throws Error  io with the system's words; bad_input beyond the limit; what `inspect` throws
+/// @throws Error  io with the system's words; bad_input beyond the limit; cancelled when `stop`
+///                asks for it; what `inspect` throws
 [[nodiscard]] std::string read_bytes(const std::string& path,
                                      const ByteSourceOptions& options = {});
 

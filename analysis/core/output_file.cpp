@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -18,18 +20,84 @@ namespace {
   throw Error(ErrorKind::io, path, doing, std::generic_category().message(code));
 }
 
+[[noreturn]] void refuse(const std::string& path, const char* why) {
+  throw Error(ErrorKind::bad_request, path, "output", why);
+}
+
+[[noreturn]] void refuse_to_replace(const std::string& path) {
+  refuse(path, "exists already; --force replaces it");
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// Where the bytes really go, and the mode of the file that is there.
+struct Target {
+  std::string path;
+  std::optional<mode_t> mode;
+};
+
+Target find_target(const std::string& path, bool overwrite) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) fail(path, EISDIR, "output");
+    if (!S_ISREG(status.st_mode)) refuse(path, "is not a regular file");
+    if (!overwrite) refuse_to_replace(path);
+    std::error_code failure;
+    const std::filesystem::path real = std::filesystem::canonical(path, failure);
+    if (failure) fail(path, failure.value(), "output");
+    return {real.string(), status.st_mode & 07777U};
+  }
+  if (errno != ENOENT) fail(path, errno, "output");
+  if (::lstat(path.c_str(), &status) == 0) refuse(path, "is a link to a file that is not there");
+  return {path, std::nullopt};
+}
+
+void require_folder_takes_files(const std::string& path, const Target& target) {
+  if (::faccessat(AT_FDCWD, folder_of(target.path).c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
+    fail(path, errno, "create");
+  }
+}
+
+// Renames unless the new name is taken, so that two writers cannot both believe they were first.
+bool rename_to_free_name(const char* from, const char* to) {
+#ifdef RENAME_NOREPLACE
+  if (::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+#endif
+  // Some file systems cannot: NFS has links for this; on FAT the name is taken by an empty
+  // file first.
+  if (::link(from, to) == 0) {
+    ::unlink(from);
+    return true;
+  }
+  if (errno == EEXIST) return false;
+  const int claim = ::open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (claim < 0) return false;
+  ::close(claim);
+  if (::rename(from, to) == 0) return true;
+  const int code = errno;
+  ::unlink(to);
+  errno = code;
+  return false;
+}
+
 // Removes the temporary file unless it became the real one.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& path)
-      : name_(path + ".part." + std::to_string(::getpid())) {
-    descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  TemporaryFile(std::string path, Target target)
+      : path_(std::move(path)),
+        target_(std::move(target)),
+        name_(target_.path + ".part." + std::to_string(::getpid())) {
+    open_new();
     if (descriptor_ < 0 && errno == EEXIST) {
       // Left by a process that died and whose number came round again.
       ::unlink(name_.c_str());
-      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      open_new();
     }
-    if (descriptor_ < 0) fail(path, errno, "create");
+    if (descriptor_ < 0) fail(path_, errno, "create");
   }
   ~TemporaryFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -38,38 +106,42 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  void write(const std::string& path, std::string_view content) const {
+  void write(std::string_view content) const {
     while (!content.empty()) {
       const ssize_t written = ::write(descriptor_, content.data(), content.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(path, errno, "write");
+      if (written < 0) fail(path_, errno, "write");
       content.remove_prefix(static_cast<std::size_t>(written));
     }
   }
 
-  void become(const std::string& path, bool overwrite) {
-    if (::fsync(descriptor_) != 0) fail(path, errno, "write");
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail(path, errno, "write");
-    // link() refuses to replace, so two writers cannot both believe they were first.
-    if (!overwrite && ::link(name_.c_str(), path.c_str()) != 0) {
-      if (errno != EEXIST) fail(path, errno, "create");
-      throw Error(ErrorKind::bad_request, path, "output", "exists already; --force replaces it");
-    }
-    if (overwrite) {
-      if (::rename(name_.c_str(), path.c_str()) != 0) fail(path, errno, "rename");
-      name_.clear();
-    }
+  void become_target(bool overwrite) {
+    // File systems without modes refuse to set one; there is none to keep.
+    if (target_.mode) (void)::fchmod(descriptor_, *target_.mode);
+    if (::fsync(descriptor_) != 0) fail(path_, errno, "write");
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno, "write");
+    const bool renamed = overwrite ? ::rename(name_.c_str(), target_.path.c_str()) == 0
+                                   : rename_to_free_name(name_.c_str(), target_.path.c_str());
+    if (!renamed && errno == EEXIST) refuse_to_replace(path_);
+    if (!renamed) fail(path_, errno, "rename");
+    name_.clear();
   }
 
  private:
+  // Never open to more people than the file it replaces.
+  void open_new() {
+    descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                         target_.mode.value_or(0666) & 0777U);
+  }
+
+  std::string path_;  // as the caller wrote it: for errors
+  Target target_;
   std::string name_;
   int descriptor_ = -1;
 };
 
 void sync_folder_of(const std::string& path) {
-  std::string folder = std::filesystem::path(path).parent_path().string();
-  if (folder.empty()) folder = ".";
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int descriptor = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;  // a folder we may write to but not read
   ::fsync(descriptor);
   ::close(descriptor);
@@ -78,19 +150,17 @@ void sync_folder_of(const std::string& path) {
 }  // namespace
 
 void write_file(const std::string& path, std::string_view content, bool overwrite) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) == 0) {
-    if (S_ISDIR(status.st_mode)) fail(path, EISDIR, "output");
-    if (!overwrite) {
-      throw Error(ErrorKind::bad_request, path, "output", "exists already; --force replaces it");
-    }
-  }
+  const Target target = find_target(path, overwrite);
   {
-    TemporaryFile temporary(path);
-    temporary.write(path, content);
-    temporary.become(path, overwrite);
+    TemporaryFile temporary(path, target);
+    temporary.write(content);
+    temporary.become_target(overwrite);
   }
-  sync_folder_of(path);
+  sync_folder_of(target.path);
+}
+
+void require_writable(const std::string& path, bool overwrite) {
+  require_folder_takes_files(path, find_target(path, overwrite));
 }
 
 }  // namespace timbre

@@ -7,9 +7,15 @@ namespace timbre {
 
 /// Writes a whole file so that others find the old content or the new, never a
 /// part: a temporary name in the same folder, fsync, rename, fsync of the folder.
+/// Of a link the file behind it is replaced; a file that is replaced keeps its mode.
 ///
 /// @param overwrite  false: a file that is there already is an error
-/// @throws Error  io, with what the system said; bad_request if the file exists
+/// @throws Error  io, with what the system said; bad_request if the file exists, or if
+///                a device, a pipe or a broken link is in its place
 void write_file(const std::string& path, std::string_view content, bool overwrite);
+
+/// Throws what `write_file` would, as far as it can be known without writing: to be called
+/// before long work.
+void require_writable(const std::string& path, bool overwrite);
 
 }  // namespace timbre

@@ -6,8 +6,8 @@
 
 namespace timbre {
 
-ProgressReporter::ProgressReporter(const Progress& progress, std::string phase, std::int64_t total)
-    : progress_(progress), step_{std::move(phase), 0, total} {}
+ProgressReporter::ProgressReporter(Progress progress, std::string phase, std::int64_t total)
+    : progress_(std::move(progress)), step_{std::move(phase), 0, total} {}
 
 void ProgressReporter::advance_to(std::int64_t done) {
   step_.done = done;

@@ -21,14 +21,14 @@ using Progress = std::function<bool(const ProgressStep&)>;
 /// Tells a `Progress` (which may be empty) how far one phase has come.
 class ProgressReporter {
  public:
-  ProgressReporter(const Progress& progress, std::string phase, std::int64_t total);
+  ProgressReporter(Progress progress, std::string phase, std::int64_t total);
 
   /// @throws Error  cancelled, when the callback asks to stop
   void advance_to(std::int64_t done);
   void advance() { advance_to(step_.done + 1); }
 
  private:
-  const Progress& progress_;
+  Progress progress_;
   ProgressStep step_;
   std::chrono::steady_clock::time_point last_{};
 };

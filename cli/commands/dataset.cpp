@@ -10,9 +10,12 @@
 #include <thread>
 #include <vector>
 
+#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/output_file.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/analysis/mesh/write_mesh.h"
 #include "timbre/cli/command.h"
+#include "timbre/cli/options.h"
 #include "timbre/datasets/analytic.h"
 #include "timbre/datasets/articulated.h"
 #include "timbre/datasets/random.h"
@@ -71,6 +74,7 @@ void create_folder(const Context& context) {
   std::error_code failure;
   fs::create_directories(context.output, failure);
   if (failure) throw Error(ErrorKind::io, context.output, "", failure.message());
+  require_writable((fs::path(context.output) / "labels.txt").string(), context.force);
 }
 
 // One line for each template vertex: the vertex it became, counted from 1.
@@ -173,8 +177,8 @@ void require_distinct(std::vector<std::string> species) {
 void make_creatures(const CreatureArguments& args, const Context& context) {
   require_distinct(args.species);
   require_free_folder(context);
-  const std::vector<ArticulatedBody> bodies = make_bodies(args, context);
   create_folder(context);
+  const std::vector<ArticulatedBody> bodies = make_bodies(args, context);
   const std::vector<WrittenShape> written = write_shapes(args, context, bodies);
   std::string labels;
   nlohmann::json shapes = nlohmann::json::array();
@@ -192,12 +196,13 @@ void make_creatures(const CreatureArguments& args, const Context& context) {
   context.write_result((folder / "symmetry.txt").string(), symmetry_table(bodies));
   context.write_result((folder / "pairs.txt").string(), pair_lines(args));
   context.write_result((folder / "labels.txt").string(), labels);
-  context.answer({{"folder", utf8_or_replaced(context.output)},
+  context.answer({{"folder", context.output},
                   {"shapes", shapes},
                   {"labels", "labels.txt"},
                   {"pairs", "pairs.txt"},
                   {"symmetry", "symmetry.txt"}},
-                 "wrote " + std::to_string(written.size()) + " shapes to " + context.output + "\n");
+                 "wrote " + std::to_string(written.size()) + " shapes to " +
+                     escape_control(context.output) + "\n");
 }
 
 void add_creatures(CLI::App& make, Context& context) {
@@ -217,13 +222,14 @@ void add_creatures(CLI::App& make, Context& context) {
   command
       .add_option("--variation", args->options.variation,
                   "share by which the seed may change proportions")
-      ->check(CLI::Range(0.0, 0.25))
+      ->check(number_between(0.0, 0.25))
       ->capture_default_str();
   command.add_flag("!--no-shuffle", args->options.shuffle,
                    "keep one vertex order over the poses of a species");
   command.add_option("--format", args->format, "of the meshes: ply, off or obj")
       ->check(CLI::IsMember({"ply", "off", "obj"}))
       ->capture_default_str();
+  add_threads_option(command, context);
   add_common_options(command, context, true);
   command.get_option("--output")->required()->description("folder for the files");
   command.footer(
@@ -277,14 +283,14 @@ MeshFormat format_for(const AnalyticArguments& args, const std::string& path) {
 void make_analytic(const AnalyticKind& kind, const AnalyticArguments& args,
                    const Context& context) {
   const MeshFormat format = format_for(args, context.output);
+  context.require_output();
   const TriangleMesh mesh = kind.make(args.resolution);
   context.write_result(context.output, to_mesh_bytes(mesh, format));
-  if (context.output == "-") return;
-  context.answer({{"file", utf8_or_replaced(context.output)},
+  context.answer({{"file", context.output},
                   {"kind", kind.name},
                   {"vertices", mesh.vertices.rows()},
                   {"faces", mesh.faces.rows()}},
-                 "wrote " + context.output + "\n");
+                 context.output == "-" ? "" : "wrote " + escape_control(context.output) + "\n");
 }
 
 void add_analytic(CLI::App& make, const AnalyticKind& kind, Context& context) {

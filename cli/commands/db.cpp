@@ -27,9 +27,9 @@ void add_db_create(CLI::App& db, Context& context) {
   command.footer("Example:\n  timbre db create shapes.timbre --mass consistent");
   command.callback([args, &context] {
     const Store store = Store::create(args->database, {args->op.kind, args->op.mass, args->count});
-    context.answer({{"database", utf8_or_replaced(args->database)},
-                    {"parameters", to_parameters(store.parameters())}},
-                   "created " + escape_control(args->database) + "\n");
+    context.answer(
+        {{"database", args->database}, {"parameters", to_parameters(store.parameters())}},
+        "created " + escape_control(args->database) + "\n");
   });
 }
 
@@ -94,9 +94,9 @@ void add_db_verify(CLI::App& db, Context& context) {
     nlohmann::json findings = nlohmann::json::array();
     std::string text;
     for (const Damage& damage : report.damaged) {
-      const std::string name = utf8_or_replaced(damage.name.empty() ? *database : damage.name);
+      const std::string name = damage.name.empty() ? *database : damage.name;
       if (names.empty() || names.back() != name) names.push_back(name);
-      findings.push_back({{"name", name}, {"cause", utf8_or_replaced(damage.cause)}});
+      findings.push_back({{"name", name}, {"cause", damage.cause}});
       text += escape_control(name + ": " + damage.cause) + '\n';
     }
     text += std::to_string(report.checked) + " shapes checked, " +

@@ -88,20 +88,21 @@ void report(const Context& context, const IngestResult& result, nlohmann::json& 
     context.complain(result.error);
   }
   if (!context.json) return;
-  results.push_back({{"file", utf8_or_replaced(result.path)},
-                     {"name", utf8_or_replaced(result.name)},
-                     {"outcome", outcome}});
-  if (!result.outcome) results.back()["error"] = utf8_or_replaced(result.error);
+  results.push_back({{"file", result.path}, {"name", result.name}, {"outcome", outcome}});
+  if (!result.outcome) results.back()["error"] = result.error;
 }
 
 void run(const Arguments& args, Context& context) {
   const std::vector<IngestInput> inputs = inputs_of(args);
   Store store = open_or_create(args);
   nlohmann::json results = nlohmann::json::array();
-  const IngestSummary summary = add_files(
-      store, inputs,
-      {.replace = args.replace, .threads = context.threads, .progress = context.progress()},
-      [&](const IngestResult& result) { report(context, result, results); });
+  const IngestSummary summary =
+      add_files(store, inputs,
+                {.replace = args.replace,
+                 .threads = context.threads,
+                 .progress = context.progress(),
+                 .read = context.read},
+                [&](const IngestResult& result) { report(context, result, results); });
   if (summary.failed > 0) context.exit_code = 1;
   if (!context.json) return;
   context.answer({{"added", summary.added},
@@ -129,6 +130,8 @@ void add_db_add(CLI::App& db, Context& context) {
   command.add_option("-k,--count", args->count, "eigenvalues kept of each shape")
       ->capture_default_str()
       ->check(CLI::Range(2, 100000));
+  add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, false);
   command.footer(
       "A line 'added NAME' means that NAME is on disk, whatever happens next. Adding again\n"

@@ -5,6 +5,7 @@
 #include "timbre/analysis/mesh/write_mesh.h"
 #include "timbre/cli/array_output.h"
 #include "timbre/cli/commands/db.h"
+#include "timbre/cli/options.h"
 #include "timbre/index/store.h"
 
 namespace timbre::cli {
@@ -22,9 +23,16 @@ struct Arguments {
   bool spectrum = false;
 };
 
-void run(const Arguments& args, const Context& context) {
+void run(const Arguments& args, Context& context) {
+  if (context.output.empty()) context.output = "-";
+  const std::string& output = context.output;
+  if (args.spectrum) {
+    (void)array_format(output);
+  } else {
+    (void)format_of(output);
+  }
+  context.require_output();
   const Store store = Store::open(args.database);
-  const std::string output = context.output.empty() ? "-" : context.output;
   if (args.spectrum) {
     const auto shape = store.find(args.name);
     const Eigen::VectorXd values = store.eigenvalues(args.name) / shape.value_or(ShapeInfo()).area;
@@ -32,9 +40,7 @@ void run(const Arguments& args, const Context& context) {
   } else {
     context.write_result(output, to_mesh_bytes(store.mesh(args.name), format_of(output)));
   }
-  if (context.json && output != "-") {
-    context.answer({{"name", args.name}, {"output", utf8_or_replaced(output)}}, "");
-  }
+  context.answer({{"name", args.name}, {"output", output}}, "");
 }
 
 }  // namespace

@@ -25,11 +25,10 @@ json or_null(double value) { return std::isfinite(value) ? json(value) : json();
 json to_json(const std::string& path, const MeshFile& file, const Diagnosis& found) {
   json warnings = json::array();
   for (const ReadWarning& warning : file.warnings) {
-    warnings.push_back({{"code", warning.code},
-                        {"count", warning.count},
-                        {"message", utf8_or_replaced(warning.message)}});
+    warnings.push_back(
+        {{"code", warning.code}, {"count", warning.count}, {"message", warning.message}});
   }
-  return {{"mesh", utf8_or_replaced(path)},
+  return {{"mesh", path},
           {"format", file.format},
           {"vertices", found.vertices},
           {"faces", found.faces},
@@ -140,25 +139,18 @@ std::string to_text(const std::string& path, const MeshFile& file, const Diagnos
 }  // namespace
 
 void add_info(CLI::App& app, Context& context) {
-  struct Arguments {
-    std::string mesh;
-    ReadOptions options;
-  };
-  auto args = std::make_shared<Arguments>();
+  auto mesh = std::make_shared<std::string>();
   CLI::App& command =
       *app.add_subcommand("info", "What a mesh is, what is odd about it, and what that means");
-  command.add_option("MESH", args->mesh, "OFF, OBJ, PLY or STL file, also .gz; - for stdin")
-      ->required();
-  command.add_flag("--soup", args->options.soup, "STL: keep the corners of all facets apart");
-  command.add_option("--size-limit", args->options.size_limit, "bytes; larger files are refused")
-      ->capture_default_str();
+  command.add_option("MESH", *mesh, "OFF, OBJ, PLY or STL file, also .gz; - for stdin")->required();
+  add_read_options(command, context);
   add_common_options(command, context, false);
   command.footer("Example:\n  timbre info horse.ply --json | jq .genus");
 
-  command.callback([args, &context] {
-    const MeshFile file = read_mesh(args->mesh, args->options);
+  command.callback([mesh, &context] {
+    const MeshFile file = read_mesh_file(context, *mesh);
     const Diagnosis found = diagnose(file.mesh);
-    context.answer(to_json(args->mesh, file, found), to_text(args->mesh, file, found));
+    context.answer(to_json(*mesh, file, found), to_text(*mesh, file, found));
   });
 }
 

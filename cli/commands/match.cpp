@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "timbre/analysis/core/array_file.h"
+#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
@@ -52,14 +53,15 @@ std::string describe(const MatchSolution& solution) {
 }
 
 std::string to_prose(const Arguments& args, const MatchResult& result, const std::string& output) {
-  std::string text = args.source + " -> " + args.target + ": " + to_word(result.verdict);
+  std::string text = escape_control(args.source) + " -> " + escape_control(args.target) + ": " +
+                     to_word(result.verdict);
   if (!result.reason.empty()) text += " (" + result.reason + ")";
   text += "\n";
   for (std::size_t i = 0; i < result.solutions.size(); ++i) {
     text += (i == 0 ? "  best map:   " : "  other map:  ") + describe(result.solutions[i]);
   }
   text += describe(result.switches);
-  if (!output.empty()) text += "  wrote " + output + "\n";
+  if (!output.empty() && output != "-") text += "  wrote " + escape_control(output) + "\n";
   return text;
 }
 
@@ -88,8 +90,8 @@ nlohmann::json to_json(const Arguments& args, const MatchResult& result) {
     switches.push_back(
         {{"kind", to_word(item.kind)}, {"source", item.source}, {"target", item.target}});
   }
-  return {{"source", utf8_or_replaced(args.source)},
-          {"target", utf8_or_replaced(args.target)},
+  return {{"source", args.source},
+          {"target", args.target},
           {"verdict", to_word(result.verdict)},
           {"reason", result.reason},
           {"solutions", solutions},
@@ -129,13 +131,13 @@ MatchSurface load_surface(const Context& context, const std::string& path, int c
 
 void run(const Arguments& args, Context& context) {
   const std::string format = context.output.empty() ? "" : array_format(context.output);
+  context.require_output();
   const MatchSurface A = load_surface(context, args.source, args.count);
   const MatchSurface B = load_surface(context, args.target, args.count);
   const MatchResult result =
       match(A, B, {.threads = context.threads, .progress = context.progress()});
   if (!format.empty()) context.write_result(context.output, map_bytes(result, format));
   if (args.strict && result.verdict != Verdict::clear) context.exit_code = 3;
-  if (context.output == "-") return;
   context.answer(to_json(args, result), to_prose(args, result, context.output));
 }
 
@@ -150,6 +152,8 @@ void add_match(CLI::App& timbre, Context& context) {
       ->capture_default_str()
       ->check(CLI::Range(30, 1000));
   command.add_flag("--strict", args->strict, "exit with 3 unless the verdict is clear");
+  add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, true);
   command.footer(
       "MAP.txt and MAP.npy hold, for each vertex of SOURCE, the 0-based vertex of TARGET, -1 for\n"

@@ -19,9 +19,12 @@ QueryAnswer ask(const Arguments& args, const Context& context) {
   if (args.mesh.empty() == args.stored.empty()) {
     throw Error(ErrorKind::bad_request, "", "query", "needs one of MESH and --stored NAME");
   }
+  // Of the request, not of the mesh.
+  (void)find_channel(args.options.channel);
   const Store store = Store::open(args.database);
   if (!args.stored.empty()) return query_stored(store, args.stored, args.options);
-  return query_mesh(store, load_mesh(context, args.mesh).mesh, args.options);
+  const MeshFile file = load_mesh(context, args.mesh);
+  return for_file(args.mesh, [&] { return query_mesh(store, file.mesh, args.options); });
 }
 
 void show(const Arguments& args, const QueryAnswer& answer, const Context& context) {
@@ -64,6 +67,7 @@ void add_query(CLI::App& timbre, Context& context) {
   command.add_option("--channel", args->options.channel, "descriptor to compare by")
       ->capture_default_str();
   command.add_flag("--exact", args->options.exact, "compare with every shape");
+  add_read_options(command, context);
   add_common_options(command, context, false);
   command.footer(
       "Text columns are parted by tabs; --json has all digits.\n"

@@ -24,8 +24,11 @@ struct Arguments {
   SignatureKind signature = SignatureKind::hks;
   EmbeddingOptions embedding;
   int count = 100;
+  bool count_given = false;
   OperatorOptions op;
 };
+
+constexpr int kMostGpsDimensions = 25;
 
 struct Solved {
   Operator op;
@@ -42,6 +45,11 @@ Solved solve(const Arguments& args, const Context& context) {
         compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()}),
         solved.op.area);
   });
+  const Eigen::Index used = solved.spectrum.values.size() - solved.spectrum.zeros;
+  if (used < args.count) {
+    context.note(args.mesh + ": has only " + std::to_string(used) +
+                 " eigenvalues that are not 0; these are used");
+  }
   return solved;
 }
 
@@ -71,7 +79,8 @@ std::vector<NamedMatrix> signature_of(const Solved& solved, const Arguments& arg
     case SignatureKind::gps:
       break;
   }
-  const Eigen::MatrixXd gps = compute_embedding(spectrum, {.dimensions = std::min(args.count, 25)});
+  const Eigen::MatrixXd gps =
+      compute_embedding(spectrum, {.dimensions = std::min(args.count, kMostGpsDimensions)});
   return {{"gps_q", compute_distance_quantiles(gps, solved.op.lumped_mass)}};
 }
 
@@ -79,14 +88,14 @@ std::vector<NamedMatrix> signature_of(const Solved& solved, const Arguments& arg
 void answer(const std::vector<NamedMatrix>& matrices, const Arguments& args,
             const Context& context) {
   const NamedMatrix& main = matrices.front();
-  nlohmann::json document = {{"mesh", utf8_or_replaced(args.mesh)},
+  nlohmann::json document = {{"mesh", args.mesh},
                              {"kind", main.name},
                              {"rows", main.values.rows()},
                              {"columns", main.values.cols()}};
   if (!context.output.empty()) {
     context.write_result(context.output, to_file_bytes(context.output, matrices));
-    document["output"] = utf8_or_replaced(context.output);
-    if (context.json && context.output != "-") context.answer(document, "");
+    document["output"] = context.output;
+    context.answer(document, "");
     return;
   }
   if (context.json) {
@@ -101,12 +110,38 @@ void answer(const std::vector<NamedMatrix>& matrices, const Arguments& args,
   context.answer(document, context.json ? "" : to_rows_text(main.values));
 }
 
+// Reads, solves, and gives the rest of the work the file's name.
+template <typename Work>
+void run(const Arguments& args, const Context& context, const Work& work) {
+  if (!context.output.empty()) (void)array_format(context.output);
+  context.require_output();
+  const Solved solved = solve(args, context);
+  answer(for_file(args.mesh, [&] { return work(solved); }), args, context);
+}
+
+void run_signature(const Arguments& args, const Context& context) {
+  if (args.signature == SignatureKind::gps && args.count_given && args.count > kMostGpsDimensions) {
+    context.note("gps uses the first " + std::to_string(kMostGpsDimensions) + " eigenfunctions");
+  }
+  run(args, context, [&args](const Solved& solved) { return signature_of(solved, args); });
+}
+
+void run_embedding(const Arguments& args, const Context& context) {
+  run(args, context, [&args](const Solved& solved) -> std::vector<NamedMatrix> {
+    EmbeddingOptions options = args.embedding;
+    options.dimensions = args.count;
+    return {{"coordinates", compute_embedding(solved.spectrum, options)},
+            {"eigenvalues", solved.spectrum.values}};
+  });
+}
+
 void add_shared_options(CLI::App& command, Arguments& args, Context& context) {
   command.add_option("MESH", args.mesh, "mesh file, or - for standard input")->required();
   command.add_option("-k,--count", args.count, "eigenvalues used, zeros not counted")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
   add_operator_options(command, args.op);
+  add_read_options(command, context);
   add_common_options(command, context, true);
 }
 
@@ -132,10 +167,13 @@ void add_signature(CLI::App& timbre, Context& context) {
   add_shared_options(command, *args, context);
   command.footer(
       "-o F.npy, F.npz (with times or energies) or F.txt. dna are the eigenvalues at unit total\n"
-      "area, dna_raw at the mesh's own scale; all others are at unit total area.\n"
+      "area, dna_raw at the mesh's own scale; all others are at unit total area. gps takes the\n"
+      "first 25 eigenfunctions at most.\n"
       "Example:\n  timbre signature horse.ply --kind wks -k 200 -o horse_wks.npz");
-  command.callback(
-      [args, &context] { answer(signature_of(solve(*args, context), *args), *args, context); });
+  command.callback([args, &command, &context] {
+    args->count_given = command.count("--count") > 0;
+    run_signature(*args, context);
+  });
 }
 
 void add_embed(CLI::App& timbre, Context& context) {
@@ -150,19 +188,12 @@ void add_embed(CLI::App& timbre, Context& context) {
       ->default_str("gps");
   command.add_option("--time", args->embedding.time, "diffusion only, in units of total area")
       ->capture_default_str()
-      ->check(CLI::Range(1e-300, 1e300));
+      ->check(number_between(1e-300, 1e300));
   add_shared_options(command, *args, context);
   command.footer(
       "-o F.npy, F.npz (with eigenvalues) or F.txt: n x k, at unit total area.\n"
       "Example:\n  timbre embed horse.ply --kind biharmonic -k 30 -o horse.npy");
-  command.callback([args, &context] {
-    const Solved solved = solve(*args, context);
-    EmbeddingOptions options = args->embedding;
-    options.dimensions = args->count;
-    answer({{"coordinates", compute_embedding(solved.spectrum, options)},
-            {"eigenvalues", solved.spectrum.values}},
-           *args, context);
-  });
+  command.callback([args, &context] { run_embedding(*args, context); });
 }
 
 }  // namespace timbre::cli

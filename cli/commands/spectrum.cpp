@@ -1,9 +1,13 @@
 #include <chrono>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "timbre/analysis/core/array_file.h"
+#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/analysis/core/output_file.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 #include "timbre/cli/command.h"
 #include "timbre/cli/options.h"
@@ -53,15 +57,38 @@ std::string lines(const Eigen::VectorXd& values) {
   return text;
 }
 
+// What goes beside F.npy.
+std::string values_path(const std::string& output) {
+  return output.substr(0, output.size() - 4) + ".evals.npy";
+}
+
+// Both files or none.
+void write_arrays(const Context& context, const Spectrum& found) {
+  const std::string beside = values_path(context.output);
+  context.write_result(beside, to_npy(found.values));
+  try {
+    context.write_result(context.output, to_npy(found.vectors));
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
+}
+
+void require_outputs(const Context& context) {
+  if (context.output.empty()) return;
+  const std::string format = array_format(context.output);
+  context.require_output();
+  if (format == "npy") require_writable(values_path(context.output), context.force);
+}
+
 void write_spectrum(const Context& context, const TriangleMesh& mesh, const Operator& op,
                     const Spectrum& found) {
   const std::string format = array_format(context.output);
   if (format == "npz") {
     context.write_result(context.output, npz(mesh, op, found));
   } else if (format == "npy") {
-    const std::string stem = context.output.substr(0, context.output.size() - 4);
-    context.write_result(stem + ".evals.npy", to_npy(found.values));
-    context.write_result(context.output, to_npy(found.vectors));
+    write_arrays(context, found);
   } else {
     context.write_result(context.output, lines(found.values));
   }
@@ -83,8 +110,13 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+std::string to_prose(const Spectrum& found, const std::string& output) {
+  if (output.empty()) return lines(found.values);
+  return output == "-" ? "" : "wrote " + escape_control(output) + "\n";
+}
+
 void run(const Arguments& args, const Context& context) {
-  if (!context.output.empty()) (void)array_format(context.output);
+  require_outputs(context);
   Stopwatch watch;
   nlohmann::json timings;
   const MeshFile file = load_mesh(context, args.mesh);
@@ -100,10 +132,9 @@ void run(const Arguments& args, const Context& context) {
                  " eigenpairs, one for each vertex in use");
   }
   if (!context.output.empty()) write_spectrum(context, file.mesh, op, found);
-  if (context.output == "-") return;
 
   const std::vector<double> values(found.values.begin(), found.values.end());
-  context.answer({{"mesh", utf8_or_replaced(args.mesh)},
+  context.answer({{"mesh", args.mesh},
                   {"eigenvalues", values},
                   {"zeros", found.zeros},
                   {"residual", found.residuals.maxCoeff()},
@@ -113,7 +144,7 @@ void run(const Arguments& args, const Context& context) {
                   {"mass", to_word(op.mass_kind)},
                   {"area", op.area},
                   {"timings", timings}},
-                 context.output.empty() ? lines(found.values) : "wrote " + context.output + "\n");
+                 to_prose(found, context.output));
 }
 
 }  // namespace
@@ -128,8 +159,9 @@ void add_spectrum(CLI::App& timbre, Context& context) {
   add_operator_options(command, args->op);
   command.add_option("--tolerance", args->spectrum.tolerance, "largest relative residual accepted")
       ->capture_default_str()
-      ->check(CLI::Range(1e-14, 1.0));
+      ->check(number_between(1e-14, 1.0));
   command.add_flag("!--no-certify", args->spectrum.certify, "skip the proof that none is missing");
+  add_read_options(command, context);
   add_common_options(command, context, true);
   command.footer(
       "Without -o the eigenvalues are printed, one a line. F.npz holds mesh, matrices and\n"

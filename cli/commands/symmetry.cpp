@@ -18,15 +18,16 @@ struct Arguments {
 
 std::string to_prose(const Arguments& args, const std::vector<Reflection>& found,
                      const std::string& output) {
-  if (found.empty()) return args.mesh + ": no reflection found\n";
-  std::string text = args.mesh + ": " + std::to_string(found.size()) + " candidate" +
-                     (found.size() == 1 ? "" : "s") + " for a reflection, best first\n";
+  if (found.empty()) return escape_control(args.mesh) + ": no reflection found\n";
+  std::string text = escape_control(args.mesh) + ": " + std::to_string(found.size()) +
+                     " candidate" + (found.size() == 1 ? "" : "s") +
+                     " for a reflection, best first\n";
   for (const Reflection& reflection : found) {
     text += "  energy " + to_text(reflection.energy, 3) + ", confidence " +
             to_text(100.0 * reflection.confidence, 0) + " %" + ", mean displacement " +
             to_text(reflection.displacement, 2) + "\n";
   }
-  if (!output.empty()) text += "  wrote " + output + "\n";
+  if (!output.empty() && output != "-") text += "  wrote " + escape_control(output) + "\n";
   return text;
 }
 
@@ -40,7 +41,7 @@ nlohmann::json to_json(const Arguments& args, const std::vector<Reflection>& fou
                     {"involution_error", reflection.involution},
                     {"geodesic", reflection.energies.geodesic}});
   }
-  return {{"mesh", utf8_or_replaced(args.mesh)}, {"maps", maps}};
+  return {{"mesh", args.mesh}, {"maps", maps}};
 }
 
 std::string map_bytes(const std::vector<Reflection>& found, const std::string& format) {
@@ -56,6 +57,7 @@ std::string map_bytes(const std::vector<Reflection>& found, const std::string& f
 
 void run(const Arguments& args, const Context& context) {
   const std::string format = context.output.empty() ? "" : array_format(context.output);
+  context.require_output();
   const MeshFile file = load_mesh(context, args.mesh);
   const MatchSurface surface = for_file(args.mesh, [&] {
     return prepare_surface(
@@ -71,7 +73,6 @@ void run(const Arguments& args, const Context& context) {
     }
     context.write_result(context.output, map_bytes(found, format));
   }
-  if (context.output == "-") return;
   context.answer(to_json(args, found), to_prose(args, found, context.output));
 }
 
@@ -84,6 +85,8 @@ void add_symmetry(CLI::App& timbre, Context& context) {
   command.add_option("-k,--count", args->count, "eigenfunctions used")
       ->capture_default_str()
       ->check(CLI::Range(30, 1000));
+  add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, true);
   command.footer(
       "MAP.txt and MAP.npy hold the best reflection: for each vertex the 0-based vertex of its\n"

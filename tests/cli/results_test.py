@@ -93,6 +93,11 @@ class Files(Results):
             os.remove(taken)
         self.run_timbre("spectrum", self.mesh, "-k", "9", "-o", out)
         self.assertEqual(self.names(), ["a.evals.npy", "a.npy", "torus.off"])
+        # The second file is too large for what the shell allows.
+        small = 'trap "" XFSZ; ulimit -f 8; "$0" spectrum "$1" -k 20 -o "$2"'
+        done = self.shell(small, self.mesh, self.path("b.npy"), code=1)
+        self.assertIn(b"b.npy: write: File too large", done.stderr)
+        self.assertEqual(self.names(), ["a.evals.npy", "a.npy", "torus.off"])
 
     def test_force_writes_through_a_link_and_keeps_the_mode(self):
         real = pathlib.Path(self.put("real.txt", "old"))

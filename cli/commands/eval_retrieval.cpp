@@ -57,7 +57,7 @@ void show(const RetrievalReport& report, const Arguments& args, Context& context
     entry["label"] = one.label;
     entry["queries"] = one.queries;
     document["classes"].push_back(entry);
-    text += to_line(one.label, one.mean);
+    text += to_line(escape_control(one.label), one.mean);
   }
   document["channel"] = args.channel;
   document["queries"] = report.queries;

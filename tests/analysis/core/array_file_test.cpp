@@ -22,8 +22,7 @@ TEST(ToNpy, HeaderFillsABlockAndDataFollow) {
 
 TEST(ToNpy, KeepsTheTypeOfIndices) {
   const std::string bytes = to_npy(Eigen::VectorXi(Eigen::VectorXi::LinSpaced(4, 0, 3)));
-  EXPECT_NE(bytes.find("'descr': '<i4', 'fortran_order': False, 'shape': (4,)"),
-            std::string::npos);
+  EXPECT_NE(bytes.find("'descr': '<i4', 'fortran_order': False, 'shape': (4,)"), std::string::npos);
 }
 
 TEST(ToNpz, IsTheSameBytesEachTime) {

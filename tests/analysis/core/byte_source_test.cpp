@@ -95,6 +95,18 @@ TEST(ReadBytes, ShowsTheHeadBeforeItReadsTheRest) {
             "byte 4: enough");
 }
 
+TEST(ReadBytes, NamesAnEmptyName) {
+  EXPECT_EQ(failure([] { return read_bytes(""); }), "'': open: No such file or directory");
+}
+
+TEST(ReadBytes, StopsWaitingWhenAsked) {
+  const TemporaryFolder folder;
+  put_file(folder / "a", "x");
+  EXPECT_EQ(read_bytes(folder / "a", {.stop = [] { return false; }}), "x");
+  EXPECT_EQ(failure([&] { return read_bytes(folder / "a", {.stop = [] { return true; }}); }),
+            folder / "a" + ": read: stopped on request");
+}
+
 TEST(UnpackGzip, JoinsMembers) {
   const std::string large(5'000'000, 'x');
   EXPECT_EQ(unpack_gzip(gzip("ab") + gzip("") + gzip(large), kLimit), "ab" + large);

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <random>
 #include <string>
@@ -23,8 +23,9 @@ TEST(ParseDouble, TakesEveryDecimalForm) {
 }
 
 TEST(ParseDouble, RefusesWhatIsNoNumber) {
-  for (const char* text : {"", "+", "-", ".", "e", "1e", "1e+", "0x1p3", "0,5", "1.2.3", "nan", "inf",
-                           "-inf", "1.0d0", "0.5f", "+-1", "++1", "--1", " 1", "1 ", "e5", ".e1"}) {
+  for (const char* text :
+       {"",    "+",    "-",     ".",    "e",   "1e",  "1e+", "0x1p3", "0,5", "1.2.3", "nan",
+        "inf", "-inf", "1.0d0", "0.5f", "+-1", "++1", "--1", " 1",    "1 ",  "e5",    ".e1"}) {
     EXPECT_FALSE(parse_double(text)) << text;
   }
 }
@@ -60,7 +61,8 @@ TEST(ParseInteger, IsStrictAndNeverWraps) {
   EXPECT_EQ(parse_integer("42"), 42);
   EXPECT_EQ(parse_integer("+7"), 7);
   EXPECT_EQ(parse_integer("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
-  for (const char* text : {"", "+", "-", "3.0", "2e0", "0x10", "9223372036854775808", "1 ", "+-1"}) {
+  for (const char* text :
+       {"", "+", "-", "3.0", "2e0", "0x10", "9223372036854775808", "1 ", "+-1"}) {
     EXPECT_FALSE(parse_integer(text)) << text;
   }
 }

@@ -1,6 +1,7 @@
 #include "timbre/analysis/core/output_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -41,6 +42,45 @@ TEST(WriteFile, SaysWhatTheSystemSaid) {
   const TemporaryFolder folder;
   EXPECT_EQ(kind_of_failure(folder / "missing/a.txt", false), ErrorKind::io);
   EXPECT_EQ(kind_of_failure(folder.path().string(), true), ErrorKind::io);
+}
+
+TEST(WriteFile, ReplacesTheFileBehindALinkAndKeepsItsMode) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "far");
+  put_file(folder / "far/a.txt", "old");
+  fs::permissions(folder / "far/a.txt", fs::perms::owner_all | fs::perms::others_write);
+  fs::create_symlink("far/a.txt", folder / "link.txt");
+  write_file(folder / "link.txt", "new", true);
+  EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(file_content(folder / "far/a.txt"), "new");
+  EXPECT_EQ(fs::status(folder / "far/a.txt").permissions(),
+            fs::perms::owner_all | fs::perms::others_write);
+}
+
+TEST(WriteFile, RefusesWhatIsNoRegularFile) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "fifo").c_str(), 0600), 0);
+  std::filesystem::create_symlink("none", folder / "broken");
+  for (const bool overwrite : {false, true}) {
+    EXPECT_EQ(kind_of_failure(folder / "fifo", overwrite), ErrorKind::bad_request);
+    EXPECT_EQ(kind_of_failure(folder / "broken", overwrite), ErrorKind::bad_request);
+    EXPECT_EQ(kind_of_failure("/dev/null", overwrite), ErrorKind::bad_request);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "none"));
+}
+
+TEST(RequireWritable, RefusesWhatWriteFileWouldAndWritesNothing) {
+  const TemporaryFolder folder;
+  require_writable(folder / "a.txt", false);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+  put_file(folder / "a.txt", "old");
+  require_writable(folder / "a.txt", true);
+  EXPECT_EQ(file_content(folder / "a.txt"), "old");
+  EXPECT_THROW(require_writable(folder / "a.txt", false), Error);
+  EXPECT_THROW(require_writable(folder / "none/a.txt", true), Error);
+  EXPECT_THROW(require_writable(folder / "a.txt/b.txt", true), Error);
+  EXPECT_THROW(require_writable(folder.path().string(), true), Error);
 }
 
 }  // namespace

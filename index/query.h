@@ -21,7 +21,7 @@ struct QueryOptions {
   /// milliseconds. From here on candidates come from a `NearestIndex`.
   std::int64_t exact_below = 100000;
   std::function<void(const std::string&)> note = {};  ///< told what the index cache did
-  Progress progress = {};                        ///< of solving the query's mesh
+  Progress progress = {};                             ///< of solving the query's mesh
 };
 
 struct QueryResult {

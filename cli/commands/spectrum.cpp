@@ -1,4 +1,3 @@
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -8,6 +7,7 @@
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/analysis/core/output_file.h"
+#include "timbre/analysis/core/stopwatch.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 #include "timbre/cli/command.h"
 #include "timbre/cli/options.h"
@@ -99,17 +99,6 @@ nlohmann::json to_json(const std::optional<Certificate>& certificate) {
   return {{"bound", certificate->bound}, {"count", certificate->count}};
 }
 
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 std::string to_prose(const Spectrum& found, const std::string& output) {
   if (output.empty()) return lines(found.values);
   return output == "-" ? "" : "wrote " + escape_control(output) + "\n";
@@ -123,6 +112,10 @@ void run(const Arguments& args, const Context& context) {
   timings["read"] = watch.lap();
   const Operator op = for_file(args.mesh, [&] { return compute_operator(file.mesh, args.op); });
   timings["operator"] = watch.lap();
+  if (op.mollified_by > 0.0) {
+    context.note(args.mesh + ": thin triangles: edge lengths raised by " +
+                 to_short_text(op.mollified_by) + " (mollification)");
+  }
   SpectrumOptions options = args.spectrum;
   options.progress = context.progress();
   const Spectrum found = for_file(args.mesh, [&] { return compute_spectrum(op, options); });
@@ -143,6 +136,7 @@ void run(const Arguments& args, const Context& context) {
                   {"operator", to_word(op.kind)},
                   {"mass", to_word(op.mass_kind)},
                   {"area", op.area},
+                  {"mollified_by", op.mollified_by},
                   {"timings", timings}},
                  to_prose(found, context.output));
 }

@@ -13,7 +13,7 @@ inline std::filesystem::path shared_data() {
 
 }  // namespace timbre
 
-#define TIMBRE_NEEDS_SHARED_DATA(relative)                                      \
-  if (!std::filesystem::exists(timbre::shared_data() / (relative))) {           \
+#define TIMBRE_NEEDS_SHARED_DATA(relative)                                     \
+  if (!std::filesystem::exists(timbre::shared_data() / (relative))) {          \
     GTEST_SKIP() << "the public data set " << (relative) << " is not present"; \
   }

@@ -77,7 +77,8 @@ TEST(Cursor, ChecksCountsBeforeAnyoneAllocates) {
 TEST(InQuotes, CutsLongInputBetweenCharacters) {
   EXPECT_EQ(in_quotes("abc"), "'abc'");
   EXPECT_EQ(in_quotes(std::string(50, 'a')), "'" + std::string(40, 'a') + "...'");
-  EXPECT_EQ(in_quotes(std::string(39, 'a') + "\xc3\xbc\xc3\xbc"), "'" + std::string(39, 'a') + "...'");
+  EXPECT_EQ(in_quotes(std::string(39, 'a') + "\xc3\xbc\xc3\xbc"),
+            "'" + std::string(39, 'a') + "...'");
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ class Matcher {
       : a_(A),
         b_(B),
         options_(options),
+        sided_(A.orientation != Orientation::none && B.orientation != Orientation::none),
         oriented_(A.orientation == Orientation::outward && B.orientation == Orientation::outward),
         reporter_(options.progress, "matching", 4) {}
 
@@ -136,7 +137,7 @@ class Matcher {
   }
 
   [[nodiscard]] bool misoriented(const Rival& rival) const {
-    return oriented_ && rival.candidate.orientation < 0;
+    return sided_ && rival.candidate.orientation < 0;
   }
 
   void refine(Rival& rival) {
@@ -212,19 +213,19 @@ class Matcher {
 
   void judge(MatchResult& result) const {
     const MatchSolution& best = result.solutions[0];
-    const bool sided = a_.orientation != Orientation::none && b_.orientation != Orientation::none;
     const auto second = std::find_if(
         result.solutions.begin() + 1, result.solutions.end(),
         [&](const MatchSolution& other) { return other.orientation == best.orientation; });
     // Written so that NaN fails.
     const bool plausible =
-        best.energies.geodesic <= 0.16 && (!sided || std::abs(best.energies.areas) >= 0.3);
+        best.energies.geodesic <= 0.16 && (!sided_ || std::abs(best.energies.areas) >= 0.3);
     if (!plausible) {
       result.verdict = Verdict::failed;
       result.reason = "the best map stretches distances and area forms too much to be one";
     } else if (!oriented_) {
       result.verdict = Verdict::ambiguous;
-      result.reason = "a shape is open or one-sided: left and right cannot be told apart";
+      result.reason = sided_ ? "a shape is open: left and right hang on the side its faces show"
+                             : "a shape is one-sided: left and right cannot be told apart";
     } else if (repeated_share(a_) > kRepeated || repeated_share(b_) > kRepeated) {
       result.verdict = Verdict::ambiguous;
       result.reason = "eigenvalues come in groups: a shape can be turned onto itself";
@@ -251,7 +252,8 @@ class Matcher {
   const MatchSurface& a_;
   const MatchSurface& b_;
   const MatchOptions& options_;
-  bool oriented_;
+  bool sided_;     // both have consistent faces: the files' word for which side is out
+  bool oriented_;  // both enclose a volume, which proves it
   ProgressReporter reporter_;
 };
 

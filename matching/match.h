@@ -26,7 +26,7 @@ enum class MapOrientation : std::uint8_t {
 
 /// One answer among several, best first.
 struct MatchSolution {
-  /// Small is good; comparable within one match only. Between closed shapes 2 is added to
+  /// Small is good; comparable within one match only. Between two-sided shapes 2 is added to
   /// a mirrored map: poses of a left-right symmetric body fit it as well as the right one.
   double energy = 0.0;
   MapOrientation orientation = MapOrientation::unknown;
@@ -62,8 +62,9 @@ struct MatchOptions {
 /// Every sign and order of the low eigenfunctions is a hypothesis (`search_candidates`),
 /// in both orientations; the candidates are refined on samples and compared by several
 /// energies, the best distinct ones again on all vertices, close rivals once more after
-/// dense refinement. Where both shapes are closed the answer keeps orientation, unless a
-/// mirrored map is better by far; the best mirrored map stands among the solutions.
+/// dense refinement. Where both shapes have two sides the answer keeps orientation, unless
+/// a mirrored map is better by far; the best mirrored map stands among the solutions. On
+/// open shapes the sides are taken from the order of the faces' corners, and doubted.
 ///
 /// Vertices outside the largest component, or in no triangle, are unmatched (-1).
 /// @throws Error  bad_request unless `candidates` and `rivals` are at least 1; cancelled

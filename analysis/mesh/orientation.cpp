@@ -81,6 +81,17 @@ Winding wind(const Adjacency& adjacency) {
   return winding;
 }
 
+// Patches in which most faces would turn: there the file's side is the other one.
+std::vector<bool> patches_turned_mostly(const Winding& winding) {
+  std::vector<std::int64_t> balance(static_cast<std::size_t>(winding.patches), 0);
+  for (std::size_t f = 0; f < winding.turn.size(); ++f) {
+    balance[static_cast<std::size_t>(winding.patch[f])] += winding.turn[f] ? 1 : -1;
+  }
+  std::vector<bool> mostly;
+  for (const std::int64_t sum : balance) mostly.push_back(sum > 0);
+  return mostly;
+}
+
 struct Extent {
   std::vector<double> volume;  ///< of each patch, seen from the middle of the mesh
   double area = 0.0;
@@ -109,24 +120,26 @@ OrientedFaces orient_outward(const TriangleMesh& mesh) {
   const Adjacency adjacency = adjacency_of(mesh.faces);
   const Winding winding = wind(adjacency);
   if (winding.one_sided || mesh.faces.rows() == 0) return result;
+  const std::vector<bool> against_most = patches_turned_mostly(winding);
   for (Index f = 0; f < mesh.faces.rows(); ++f) {
-    if (winding.turn[static_cast<std::size_t>(f)]) {
-      std::swap(result.faces(f, 1), result.faces(f, 2));
-    }
+    const auto at = static_cast<std::size_t>(f);
+    const bool turned_mostly = against_most[static_cast<std::size_t>(winding.patch[at])];
+    if (winding.turn[at] != turned_mostly) std::swap(result.faces(f, 1), result.faces(f, 2));
   }
   const Extent extent = measure(mesh.vertices, result.faces, winding);
   const double rounding = 1e-9 * std::pow(extent.area, 1.5);
   double volume = 0.0;
-  for (Index f = 0; f < mesh.faces.rows(); ++f) {
-    const auto patch = static_cast<std::size_t>(winding.patch[static_cast<std::size_t>(f)]);
-    if (extent.volume[patch] < -rounding) std::swap(result.faces(f, 1), result.faces(f, 2));
-  }
   for (const double part : extent.volume) volume += std::abs(part);
   constexpr double kMostOpen = 0.02;
   constexpr double kLeastVolume = 1e-3;  // of area^1.5; a ball has 0.094
   const bool has_inside =
       adjacency.open_share <= kMostOpen && volume > kLeastVolume * std::pow(extent.area, 1.5);
   result.orientation = has_inside ? Orientation::outward : Orientation::consistent;
+  if (!has_inside) return result;
+  for (Index f = 0; f < mesh.faces.rows(); ++f) {
+    const auto patch = static_cast<std::size_t>(winding.patch[static_cast<std::size_t>(f)]);
+    if (extent.volume[patch] < -rounding) std::swap(result.faces(f, 1), result.faces(f, 2));
+  }
   return result;
 }
 

@@ -18,9 +18,9 @@ struct OrientedFaces {
 };
 
 /// Turns triangles over so that those on a common edge agree, and out of the volume where
-/// there is one. Small holes and a few edges of three or more triangles do no harm:
-/// `outward` asks that all but 2 % of the edges have two triangles. Triangles with a
-/// repeated corner are passed over.
+/// there is one; else to the side that most of them show. Small holes and a few edges of three or
+/// more triangles do no harm: `outward` asks that all but 2 % of the edges have two triangles.
+/// Triangles with a repeated corner are passed over.
 [[nodiscard]] OrientedFaces orient_outward(const TriangleMesh& mesh);
 
 }  // namespace timbre

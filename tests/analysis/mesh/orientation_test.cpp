@@ -68,6 +68,13 @@ TEST(OrientOutward, MakesAnOpenSurfaceConsistentAndSaysSo) {
   }
 }
 
+TEST(OrientOutward, KeepsTheSideThatMostFacesOfAnOpenSurfaceShow) {
+  const TriangleMesh flat = make_rectangle(1, 1, 6, 6);
+  TriangleMesh turned = flat;
+  for (Eigen::Index f = 0; f < 20; ++f) std::swap(turned.faces(f, 1), turned.faces(f, 2));
+  EXPECT_EQ(orient_outward(turned).faces, flat.faces);
+}
+
 TEST(OrientOutward, KnowsAOneSidedSurface) {
   // A strip of 20 cells, its ends joined with a half turn.
   TriangleMesh moebius;

@@ -169,9 +169,10 @@ TriangleMesh make_ellipsoid(double a, double b, double c, int frequency) {
 
 IntrinsicMesh make_flat_torus(int n) {
   IntrinsicMesh torus;
-  torus.vertices = n * n;
-  torus.faces.resize(2 * n * n, 3);
-  torus.lengths.resize(2 * n * n, 3);
+  const Eigen::Index cells = Eigen::Index{n} * n;
+  torus.vertices = cells;
+  torus.faces.resize(2 * cells, 3);
+  torus.lengths.resize(2 * cells, 3);
   const double side = 1.0 / n;
   const double diagonal = std::sqrt(2.0) * side;
   const auto at = [n](int i, int j) { return (i % n) * n + j % n; };

@@ -87,8 +87,9 @@ std::vector<bool> patches_turned_mostly(const Winding& winding) {
   for (std::size_t f = 0; f < winding.turn.size(); ++f) {
     balance[static_cast<std::size_t>(winding.patch[f])] += winding.turn[f] ? 1 : -1;
   }
-  std::vector<bool> mostly;
-  for (const std::int64_t sum : balance) mostly.push_back(sum > 0);
+  std::vector<bool> mostly(balance.size());
+  std::transform(balance.begin(), balance.end(), mostly.begin(),
+                 [](std::int64_t sum) { return sum > 0; });
   return mostly;
 }
 

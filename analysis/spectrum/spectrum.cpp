@@ -192,7 +192,7 @@ class Solver {
 
   // Without pivoting a factorisation can meet a 0 although the shift is no eigenvalue;
   // another shift in the same gap does not.
-  Count count_below(const Cut& cut) const {
+  [[nodiscard]] Count count_below(const Cut& cut) const {
     constexpr std::array kPlaces = {0.5, 0.4, 0.62, 0.3, 0.71, 0.2};
     for (std::size_t i = 0;; ++i) {
       try {

@@ -62,8 +62,8 @@ std::vector<Rival> compare_on_samples(const MatchSurface& s, const std::vector<C
   std::stable_sort(all.begin(), all.end(), [](const Rival& x, const Rival& y) {
     return x.sample_energy < y.sample_energy;
   });
-  std::vector<Rival*> ranked;
-  for (Rival& rival : all) ranked.push_back(&rival);
+  std::vector<Rival*> ranked(all.size());
+  std::transform(all.begin(), all.end(), ranked.begin(), [](Rival& rival) { return &rival; });
   return detail::first_distinct(s, s, ranked, options.rivals);
 }
 

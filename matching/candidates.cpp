@@ -3,11 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <numeric>
 #include <utility>
-
-#include "timbre/analysis/core/threads.h"
 
 namespace timbre {
 namespace {

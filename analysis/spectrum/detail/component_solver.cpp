@@ -4,12 +4,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <random>
 #include <stdexcept>
-
-#include "timbre/analysis/core/matrix_product.h"
 
 namespace timbre::detail {
 namespace {

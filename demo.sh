@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 install_packages packages.txt
 configure_and_build release --target timbre_command
 timbre=$PWD/build/release/cli/timbre
-shapes=demo/shapes
+shapes=demo/creatures/remeshed
 rm -rf demo
 mkdir -p demo
 
@@ -18,7 +18,7 @@ run() {
 }
 
 say "1. Shapes: bodies with joints, each in several poses, vertices shuffled"
-run dataset make articulated -o $shapes --quiet
+run dataset make creatures -o demo/creatures --sets remeshed --poses 6 --quiet
 ls $shapes | head -n 4
 run info $shapes/person0.ply
 

@@ -16,8 +16,9 @@ using detail::Triangle;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr double kSnap = 0.3;  // lattice points closer than this, in cells, move
-constexpr int kRounds = 12;    // of relaxation; more changes little
+constexpr double kSnap = 0.3;    // lattice points closer than this, in cells, move
+constexpr double kMargin = 2.0;  // of lattice around the box, in cells
+constexpr int kRounds = 12;      // of relaxation; more changes little
 
 // A body-centred cubic lattice, turned by 45 degrees about y: then the plane x = 0 is one
 // of the planes that cut no tetrahedron. Nodes are (u, v, w) with an even sum, at
@@ -25,11 +26,13 @@ constexpr int kRounds = 12;    // of relaxation; more changes little
 // they are (i, j, k) = (v + u, v - u, w), all odd or all even.
 class Lattice {
  public:
+  //
+  // What lies at x < 0 is left out.
   Lattice(const ImplicitFunction& f, const Eigen::AlignedBox3d& box, double cell)
       : f_(f), step_(cell / std::sqrt(2.0), cell / 2.0, cell / std::sqrt(2.0)) {
-    const Vector3d margin = Vector3d::Constant(2.0 * cell);
+    const Vector3d margin = Vector3d::Constant(kMargin * cell);
     corner_ = box.min() - margin;
-    corner_.x() = 0.0;
+    corner_.x() = std::max(corner_.x(), 0.0);
     const Vector3d extent = (box.max() + margin - corner_).cwiseQuotient(step_);
     size_ = extent.array().ceil().cast<int>() + 1;
     std::swap(size_.y(), size_.z());  // u, v, w run along x, z, y
@@ -70,15 +73,23 @@ class Lattice {
     return corner_ + step_.cwiseProduct(at.cast<double>());
   }
 
-  // Nodes near the surface count as on it.
+  // Nodes near the surface count as on it. Nodes that the value at the node before keeps
+  // clear of it have that node's sign, and no value of their own.
   void evaluate(double snap) {
     value_.assign(static_cast<std::size_t>(size_.cast<Node>().prod()), 0.0);
     for (int u = 0; u < size_[0]; ++u) {
       for (int v = 0; v < size_[1]; ++v) {
+        double known = 0.0;
+        int clear = 0;
         for (int w = (u + v) % 2; w < size_[2]; w += 2) {
           const Node n = node(u, v, w);
-          const double distance = detail::distance_estimate(f_(position(n)));
-          value_[static_cast<std::size_t>(n)] = std::abs(distance) < snap ? 0.0 : distance;
+          if (clear-- <= 0) {
+            const ImplicitValue here = f_(position(n));
+            known = detail::distance_estimate(here);
+            // Half, because the slope may be a little above 1.
+            clear = static_cast<int>(0.5 * std::abs(here.value) / (2.0 * step_.y())) - 1;
+          }
+          value_[static_cast<std::size_t>(n)] = std::abs(known) < snap ? 0.0 : known;
         }
       }
     }
@@ -198,6 +209,37 @@ MirroredMesh make_isosurface(const ImplicitFunction& f, const Eigen::AlignedBox3
   HalfSurface half = Lattice(f, box, cell).march();
   detail::relax(half, f, kRounds);
   return mirrored(half);
+}
+
+TriangleMesh make_isosurface(const ImplicitFunction& f, const Eigen::AlignedBox3d& box, double cell,
+                             const Eigen::Quaterniond& turn) {
+  // Turned, and moved to where no point comes near the plane x = 0, which is special.
+  Eigen::AlignedBox3d turned;
+  for (int corner = 0; corner < 8; ++corner) {
+    turned.extend(turn * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+  }
+  const Eigen::Isometry3d move =
+      Eigen::Translation3d(Vector3d::UnitX() * ((kMargin + 1.0) * cell - turned.min().x())) * turn;
+  const Eigen::Isometry3d back = move.inverse();
+  const ImplicitFunction moved = [&](const Vector3d& point) {
+    ImplicitValue here = f(back * point);
+    here.gradient = turn * here.gradient;
+    return here;
+  };
+  turned.translate(move.translation());
+  detail::HalfSurface whole = Lattice(moved, turned, cell).march();
+  detail::relax(whole, moved, kRounds);
+  TriangleMesh mesh;
+  mesh.vertices.resize(static_cast<Eigen::Index>(whole.points.size()), 3);
+  for (std::size_t v = 0; v < whole.points.size(); ++v) {
+    mesh.vertices.row(static_cast<Eigen::Index>(v)) = back * whole.points[v];
+  }
+  mesh.faces.resize(static_cast<Eigen::Index>(whole.faces.size()), 3);
+  for (std::size_t t = 0; t < whole.faces.size(); ++t) {
+    const Triangle& face = whole.faces[t];
+    mesh.faces.row(static_cast<Eigen::Index>(t)) << face[0], face[1], face[2];
+  }
+  return mesh;
 }
 
 }  // namespace timbre

@@ -37,4 +37,11 @@ struct MirroredMesh {
 [[nodiscard]] MirroredMesh make_isosurface(const ImplicitFunction& f,
                                            const Eigen::AlignedBox3d& box, double cell);
 
+/// The same for any surface, all of it cut by one lattice, which is turned by `turn`.
+/// Nothing about the triangles is symmetric.
+/// @param f  need not be even
+[[nodiscard]] TriangleMesh make_isosurface(const ImplicitFunction& f,
+                                           const Eigen::AlignedBox3d& box, double cell,
+                                           const Eigen::Quaterniond& turn);
+
 }  // namespace timbre

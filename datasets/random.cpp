@@ -1,5 +1,7 @@
 #include "timbre/datasets/random.h"
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -18,6 +20,12 @@ Random::Random(std::string_view topic, std::initializer_list<std::uint64_t> numb
 double Random::uniform(double low, double high) {
   constexpr double kUnit = 0x1p-53;
   return low + (high - low) * kUnit * static_cast<double>(bits_() >> 11);
+}
+
+// Box and Muller 1958.
+double Random::normal() {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0)));
+  return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
 }
 
 std::vector<std::int32_t> Random::permutation(std::int32_t n) {

@@ -19,6 +19,9 @@ class Random {
   /// In [low, high).
   [[nodiscard]] double uniform(double low, double high);
 
+  /// Of the normal distribution, mean 0 and variance 1.
+  [[nodiscard]] double normal();
+
   /// 0 to n - 1 in random order.
   [[nodiscard]] std::vector<std::int32_t> permutation(std::int32_t n);
 

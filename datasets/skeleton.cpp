@@ -37,14 +37,18 @@ ImplicitValue capsule(const Bone& bone, const Vector3d& point) {
 }
 
 // -blend log sum exp(-d / blend), taken relative to the smallest d so as not to overflow.
+// Bones that would change it by less than a billionth of `blend` are passed over.
 ImplicitValue smooth_union(const Skeleton& skeleton, const Vector3d& point) {
+  const double reach = 20.0 * skeleton.blend;
   ImplicitValue result;
   result.value = std::numeric_limits<double>::infinity();
   double sum = 0.0;
   for (const Bone& bone : skeleton.bones) {
     const ImplicitValue next = capsule(bone, point);
+    if (next.value > result.value + reach) continue;
     if (next.value < result.value) {
-      const double fade = std::exp((next.value - result.value) / skeleton.blend);
+      const bool is_far = next.value < result.value - reach;
+      const double fade = is_far ? 0.0 : std::exp((next.value - result.value) / skeleton.blend);
       sum *= fade;
       result.gradient *= fade;
       result.value = next.value;
@@ -64,17 +68,27 @@ Eigen::Quaterniond rotation(const Vector3d& angles) {
          Eigen::AngleAxisd(angles.x(), Vector3d::UnitX());
 }
 
+// Scales along the bone by its length, across it by its thickness.
+Eigen::Affine3d growth(const Bone& bone, const Proportion& proportion) {
+  const Vector3d axis = (bone.tail - bone.head).normalized();
+  Eigen::Affine3d result = Eigen::Affine3d::Identity();
+  result.linear() *= proportion.thickness;
+  result.linear() += (proportion.length - proportion.thickness) * axis * axis.transpose();
+  return result;
+}
+
 struct Ball {
   Vector3d centre;
   double radius = 0.0;
 };
 
-std::vector<Ball> balls_along(const Bone& bone, const Eigen::Isometry3d& transform) {
+std::vector<Ball> balls_along(const Bone& bone, const Eigen::Affine3d& transform,
+                              double thickness) {
   constexpr int kBalls = 6;
   std::vector<Ball> balls;
   for (int i = 0; i < kBalls; ++i) {
     const double t = static_cast<double>(i) / (kBalls - 1);
-    balls.push_back({transform * axis_at(bone, t), radius_at(bone, t)});
+    balls.push_back({transform * axis_at(bone, t), thickness * radius_at(bone, t)});
   }
   return balls;
 }
@@ -91,10 +105,10 @@ double overlap(const std::vector<Ball>& one, const std::vector<Ball>& other) {
 
 // How deep each pair of bones (b > a) lies in each other; negative is clearance.
 std::vector<double> overlaps(const Skeleton& skeleton,
-                             const std::vector<Eigen::Isometry3d>& transforms) {
+                             const std::vector<Eigen::Affine3d>& transforms, const Build& build) {
   std::vector<std::vector<Ball>> balls;
   for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
-    balls.push_back(balls_along(skeleton.bones[b], transforms[b]));
+    balls.push_back(balls_along(skeleton.bones[b], transforms[b], build[b].thickness));
   }
   std::vector<double> depths;
   for (std::size_t b = 1; b < balls.size(); ++b) {
@@ -136,22 +150,39 @@ Eigen::AlignedBox3d bounds_of(const Skeleton& skeleton) {
   return box;
 }
 
-std::vector<Eigen::Isometry3d> transforms_of(const Skeleton& skeleton, const Pose& pose) {
-  std::vector<Eigen::Isometry3d> transforms;
+Build usual_build(const Skeleton& skeleton) { return Build(skeleton.bones.size()); }
+
+Build random_build(const Skeleton& skeleton, double variation, Random& random) {
+  Build build;
+  for (const Bone& bone : skeleton.bones) {
+    const bool is_image = bone.name.ends_with(kRightSuffix);
+    const Proportion drawn = {1.0 + random.uniform(-variation, variation),
+                              1.0 + random.uniform(-variation, variation)};
+    build.push_back(is_image ? build.back() : drawn);
+  }
+  return build;
+}
+
+std::vector<Eigen::Affine3d> transforms_of(const Skeleton& skeleton, const Pose& pose,
+                                           const Build& build) {
+  std::vector<Eigen::Affine3d> transforms;
+  std::vector<Eigen::Quaterniond> turned;
   for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
     const Bone& bone = skeleton.bones[b];
-    Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-    turn.translate(bone.head).rotate(rotation(pose[b])).translate(-bone.head);
-    transforms.push_back(
-        bone.parent < 0 ? turn : transforms[static_cast<std::size_t>(bone.parent)] * turn);
+    const auto parent = static_cast<std::size_t>(std::max(bone.parent, 0));
+    const bool is_root = bone.parent < 0;
+    turned.push_back(is_root ? rotation(pose[b]) : turned[parent] * rotation(pose[b]));
+    const Vector3d head = is_root ? bone.head : transforms[parent] * bone.head;
+    transforms.push_back(Eigen::Translation3d(head) * turned[b] * growth(bone, build[b]) *
+                         Eigen::Translation3d(-bone.head));
   }
   return transforms;
 }
 
-Pose random_pose(const Skeleton& skeleton, Random& random) {
+Pose random_pose(const Skeleton& skeleton, const Build& build, Random& random) {
   constexpr int kAttempts = 100;
   const Pose still(skeleton.bones.size(), Vector3d::Zero());
-  const std::vector<double> rest = overlaps(skeleton, transforms_of(skeleton, still));
+  const std::vector<double> rest = overlaps(skeleton, transforms_of(skeleton, still, build), build);
   Pose best = still;
   double least = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < kAttempts && least > 0.0; ++attempt) {
@@ -163,8 +194,8 @@ Pose random_pose(const Skeleton& skeleton, Random& random) {
       }
       pose.push_back(angles);
     }
-    const double depth =
-        collision(rest, overlaps(skeleton, transforms_of(skeleton, pose)), skeleton.blend);
+    const double depth = collision(
+        rest, overlaps(skeleton, transforms_of(skeleton, pose, build), build), skeleton.blend);
     if (depth >= least) continue;
     least = depth;
     best = std::move(pose);

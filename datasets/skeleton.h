@@ -4,12 +4,16 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "timbre/datasets/isosurface.h"
 #include "timbre/datasets/random.h"
 
 namespace timbre {
+
+/// What the name of a bone's mirror image has behind it.
+inline constexpr std::string_view kRightSuffix = ".right";
 
 /// A tapered capsule that turns about its head, carried by its parent.
 struct Bone {
@@ -43,11 +47,26 @@ struct BoneDistance {
 /// A box around all capsules at rest.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const Skeleton& skeleton);
 
-/// Where a pose takes each bone.
-[[nodiscard]] std::vector<Eigen::Isometry3d> transforms_of(const Skeleton& skeleton,
-                                                           const Pose& pose);
+/// How an individual differs from the skeleton: one factor for each bone's length and one
+/// for its thickness.
+struct Proportion {
+  double length = 1.0;
+  double thickness = 1.0;
+};
+using Build = std::vector<Proportion>;
+
+/// The build of the skeleton itself: all factors 1.
+[[nodiscard]] Build usual_build(const Skeleton& skeleton);
+
+/// Factors drawn from [1 - variation, 1 + variation], left and right alike.
+[[nodiscard]] Build random_build(const Skeleton& skeleton, double variation, Random& random);
+
+/// Where a pose takes each bone of an individual: bones grow along and across their axes,
+/// and carry the heads of their children along.
+[[nodiscard]] std::vector<Eigen::Affine3d> transforms_of(const Skeleton& skeleton, const Pose& pose,
+                                                         const Build& build);
 
 /// A pose within the limits, in which limbs keep out of each other as well as they do at rest.
-[[nodiscard]] Pose random_pose(const Skeleton& skeleton, Random& random);
+[[nodiscard]] Pose random_pose(const Skeleton& skeleton, const Build& build, Random& random);
 
 }  // namespace timbre

@@ -196,12 +196,116 @@ constexpr Row kAnt[] = {
     {"tibia3", "coxa3", {.42, .74, -.37}, {.68, .40, -.69}, .052, .05, {-10, 10, -30, 30, -20, 40}},
     {"tarsus3", "tibia3", {.68, .40, -.69}, {.86, .05, -.98}, .05, .046, {0, 0, 0, 0, -15, 30}},
 };
+constexpr Row kWrestler[] = {
+    {"pelvis", "pelvis", {0, .96, 0}, {0, 1.06, 0}, .155, .155, kRigid},
+    {"hip", "pelvis", {.04, .94, -.01}, {.11, .91, -.02}, .135, .13, kRigid},
+    {"belly", "pelvis", {0, 1.06, .03}, {0, 1.20, .04}, .17, .175, {-8, 22, -18, 18, -10, 10}},
+    {"chest", "belly", {0, 1.22, .02}, {0, 1.36, 0}, .175, .15, {-8, 12, -12, 12, -6, 6}},
+    {"ribs", "chest", {.06, 1.28, .03}, {.12, 1.33, .03}, .13, .12, kRigid},
+    {"clavicle", "chest", {.05, 1.42, 0}, {.21, 1.42, -.005}, .10, .09, {0, 0, 0, 0, -5, 10}},
+    {"arm", "clavicle", {.25, 1.41, 0}, {.50, 1.33, 0}, .085, .07, {-20, 20, -55, 20, -45, 45}},
+    {"forearm", "arm", {.50, 1.33, 0}, {.72, 1.27, .01}, .068, .05, {0, 0, -90, 0, 0, 0}},
+    {"hand", "forearm", {.74, 1.265, .01}, {.85, 1.235, .015}, .06, .05, {0, 0, -25, 10, -30, 30}},
+    {"neck", "chest", {0, 1.46, 0}, {0, 1.55, .01}, .085, .08, {-12, 15, -20, 20, -8, 8}},
+    {"head", "neck", {0, 1.64, .015}, {0, 1.70, .02}, .10, .095, {-15, 15, -30, 30, -8, 8}},
+    {"nose", "head", {0, 1.63, .11}, {0, 1.615, .135}, .032, .024, kRigid},
+    {"thigh", "hip", {.13, .88, 0}, {.17, .49, .01}, .135, .09, {-70, 25, -10, 10, -3, 25}},
+    {"shin", "thigh", {.17, .49, .01}, {.18, .11, -.02}, .085, .055, {0, 80, 0, 0, 0, 0}},
+    {"foot", "shin", {.18, .07, -.03}, {.19, .045, .14}, .06, .045, {-15, 25, -10, 10, 0, 0}},
+};
+
+constexpr Row kCat[] = {
+    {"trunk", "trunk", {0, .30, -.12}, {0, .30, .14}, .075, .08, kRigid},
+    {"rump", "trunk", {0, .30, -.17}, {0, .29, -.22}, .075, .068, {-15, 12, -20, 20, 0, 0}},
+    {"chest", "trunk", {0, .30, .18}, {0, .315, .22}, .078, .065, {-10, 10, -18, 18, 0, 0}},
+    {"neck", "chest", {0, .35, .26}, {0, .39, .30}, .052, .05, {-15, 40, -30, 30, -8, 8}},
+    {"head", "neck", {0, .42, .33}, {0, .42, .36}, .066, .06, {-20, 15, -25, 25, -10, 10}},
+    {"muzzle", "head", {0, .40, .41}, {0, .395, .425}, .035, .03, kRigid},
+    {"ear", "head", {.042, .475, .325}, {.06, .525, .315}, .027, .022, kRigid},
+    {"tail", "rump", {0, .33, -.28}, {0, .38, -.38}, .027, .025, {-35, 30, -40, 40, 0, 0}},
+    {"tail2", "tail", {0, .38, -.38}, {0, .46, -.44}, .025, .024, {-25, 30, -35, 35, 0, 0}},
+    {"tail3", "tail2", {0, .46, -.44}, {0, .56, -.45}, .024, .023, {-25, 30, -35, 35, 0, 0}},
+    {"tailtip", "tail3", {0, .56, -.45}, {0, .65, -.42}, .023, .023, {-30, 30, -35, 35, 0, 0}},
+    {"foreleg", "chest", {.055, .26, .18}, {.058, .15, .165}, .038, .027, {-50, 35, 0, 0, 0, 10}},
+    {"forearm", "foreleg", {.058, .15, .165}, {.058, .045, .17}, .026, .023, {-45, 10, 0, 0, 0, 0}},
+    {"paw", "forearm", {.058, .028, .175}, {.058, .025, .21}, .026, .023, {-10, 30, 0, 0, 0, 0}},
+    {"thigh", "rump", {.055, .265, -.20}, {.06, .17, -.155}, .05, .032, {-45, 30, 0, 0, 0, 10}},
+    {"shank", "thigh", {.06, .17, -.155}, {.06, .09, -.225}, .029, .025, {0, 45, 0, 0, 0, 0}},
+    {"heel", "shank", {.06, .09, -.225}, {.06, .035, -.205}, .025, .024, {-30, 5, 0, 0, 0, 0}},
+    {"hindpaw", "heel", {.06, .026, -.20}, {.06, .025, -.165}, .026, .023, {-10, 20, 0, 0, 0, 0}},
+};
+
+constexpr Row kElephant[] = {
+    {"barrel", "barrel", {0, 1.35, -.35}, {0, 1.40, .35}, .50, .47, kRigid},
+    {"rump", "barrel", {0, 1.33, -.60}, {0, 1.22, -.75}, .42, .35, {-5, 5, -8, 8, 0, 0}},
+    {"chest", "barrel", {0, 1.40, .50}, {0, 1.48, .65}, .42, .34, {-5, 5, -8, 8, 0, 0}},
+    {"head", "chest", {0, 1.78, .98}, {0, 1.68, 1.14}, .30, .25, {-20, 15, -25, 25, -8, 8}},
+    {"ear", "head", {.27, 1.90, .88}, {.60, 1.84, .68}, .11, .12, {0, 0, -40, 35, 0, 0}},
+    {"earlobe", "ear", {.28, 1.74, .88}, {.58, 1.64, .69}, .11, .12, kRigid},
+    {"tusk", "head", {.14, 1.46, 1.25}, {.24, 1.22, 1.62}, .085, .075, kRigid},
+    {"trunk", "head", {0, 1.50, 1.40}, {0, 1.10, 1.52}, .15, .125, {-50, 15, -25, 25, 0, 0}},
+    {"midtrunk", "trunk", {0, 1.10, 1.52}, {0, .72, 1.52}, .125, .105, {-50, 20, -20, 20, -20, 20}},
+    {"trunktip",
+     "midtrunk",
+     {0, .72, 1.52},
+     {0, .40, 1.62},
+     .105,
+     .09,
+     {-60, 30, -20, 20, -25, 25}},
+    {"tail", "rump", {0, 1.28, -1.10}, {0, .82, -1.24}, .09, .085, {-10, 40, -30, 30, 0, 0}},
+    {"foreleg", "chest", {.28, 1.12, .50}, {.30, .65, .52}, .20, .165, {-35, 30, 0, 0, 0, 8}},
+    {"forefoot", "foreleg", {.30, .65, .52}, {.30, .15, .53}, .16, .17, {0, 50, 0, 0, 0, 0}},
+    {"thigh", "rump", {.27, 1.08, -.58}, {.30, .65, -.50}, .22, .16, {-30, 25, 0, 0, 0, 8}},
+    {"hindfoot", "thigh", {.30, .65, -.50}, {.30, .15, -.55}, .155, .165, {0, 40, 0, 0, 0, 0}},
+};
+
+constexpr Row kKangaroo[] = {
+    {"pelvis", "pelvis", {0, .62, -.05}, {0, .75, .02}, .17, .16, kRigid},
+    {"belly", "pelvis", {0, .75, .02}, {0, .95, .12}, .155, .13, {-15, 25, -12, 12, -8, 8}},
+    {"chest", "belly", {0, .98, .14}, {0, 1.10, .20}, .122, .10, {-10, 15, -12, 12, -8, 8}},
+    {"neck", "chest", {0, 1.18, .24}, {0, 1.28, .29}, .07, .062, {-20, 25, -25, 25, -8, 8}},
+    {"head", "neck", {0, 1.34, .33}, {0, 1.32, .43}, .082, .07, {-20, 20, -25, 25, -8, 8}},
+    {"snout", "head", {0, 1.30, .50}, {0, 1.28, .58}, .052, .044, kRigid},
+    {"ear", "head", {.052, 1.43, .31}, {.10, 1.62, .28}, .043, .038, {-20, 20, 0, 0, -15, 10}},
+    {"arm", "chest", {.12, 1.08, .22}, {.20, .93, .30}, .052, .044, {-45, 25, -10, 10, -5, 30}},
+    {"forearm", "arm", {.20, .93, .30}, {.21, .82, .42}, .043, .04, {-50, 20, -15, 15, 0, 0}},
+    {"paw", "forearm", {.21, .80, .45}, {.21, .77, .53}, .043, .04, {-20, 30, 0, 0, 0, 0}},
+    {"thigh", "pelvis", {.15, .58, 0}, {.19, .42, .20}, .13, .085, {-35, 35, 0, 0, 0, 12}},
+    {"shank", "thigh", {.19, .42, .20}, {.19, .14, -.10}, .07, .052, {-20, 45, 0, 0, 0, 0}},
+    {"foot", "shank", {.19, .08, -.10}, {.20, .05, .22}, .052, .043, {-45, 15, 0, 0, 0, 0}},
+    {"tail", "pelvis", {0, .55, -.20}, {0, .35, -.45}, .11, .085, {-15, 20, -25, 25, 0, 0}},
+    {"midtail", "tail", {0, .35, -.45}, {0, .18, -.75}, .085, .065, {-10, 25, -30, 30, 0, 0}},
+    {"tailtip", "midtail", {0, .18, -.75}, {0, .10, -1.08}, .065, .045, {-10, 25, -30, 30, 0, 0}},
+};
+
+constexpr Row kOctopus[] = {
+    {"mantle", "mantle", {0, .58, -.06}, {0, .80, -.18}, .19, .21, kRigid},
+    {"head", "mantle", {0, .36, .02}, {0, .42, 0}, .15, .15, {-12, 12, -20, 20, -8, 8}},
+    {"arm1", "head", {.05, .30, .12}, {.13, .20, .32}, .085, .072, {-15, 15, -15, 15, -10, 10}},
+    {"arm1b", "arm1", {.13, .20, .32}, {.21, .10, .53}, .072, .062, {-25, 25, -30, 30, -20, 20}},
+    {"arm1c", "arm1b", {.21, .10, .53}, {.30, .07, .74}, .062, .052, {-30, 25, -35, 35, -20, 20}},
+    {"arm1d", "arm1c", {.30, .07, .74}, {.39, .10, .95}, .052, .044, {-35, 25, -40, 40, -20, 20}},
+    {"arm2", "head", {.12, .30, .05}, {.32, .20, .13}, .085, .072, {-10, 10, -15, 15, -15, 15}},
+    {"arm2b", "arm2", {.32, .20, .13}, {.53, .10, .21}, .072, .062, {-20, 20, -30, 30, -25, 25}},
+    {"arm2c", "arm2b", {.53, .10, .21}, {.74, .07, .30}, .062, .052, {-20, 20, -35, 35, -25, 30}},
+    {"arm2d", "arm2c", {.74, .07, .30}, {.95, .10, .39}, .052, .044, {-20, 20, -40, 40, -25, 35}},
+    {"arm3", "head", {.12, .30, -.05}, {.32, .20, -.13}, .085, .072, {-10, 10, -15, 15, -15, 15}},
+    {"arm3b", "arm3", {.32, .20, -.13}, {.53, .10, -.21}, .072, .062, {-20, 20, -30, 30, -25, 25}},
+    {"arm3c", "arm3b", {.53, .10, -.21}, {.74, .07, -.30}, .062, .052, {-20, 20, -35, 35, -25, 30}},
+    {"arm3d", "arm3c", {.74, .07, -.30}, {.95, .10, -.39}, .052, .044, {-20, 20, -40, 40, -25, 35}},
+    {"arm4", "head", {.05, .30, -.10}, {.13, .20, -.32}, .085, .072, {-15, 15, -15, 15, -10, 10}},
+    {"arm4b", "arm4", {.13, .20, -.32}, {.21, .10, -.53}, .072, .062, {-25, 25, -30, 30, -20, 20}},
+    {"arm4c", "arm4b", {.21, .10, -.53}, {.30, .07, -.74}, .062, .052, {-25, 30, -35, 35, -20, 20}},
+    {"arm4d", "arm4c", {.30, .07, -.74}, {.39, .10, -.95}, .052, .044, {-25, 35, -40, 40, -20, 20}},
+};
 // clang-format on
 
 constexpr Species kSpecies[] = {
-    {"person", 0.015, kPerson},   {"child", 0.012, kChild},   {"gorilla", 0.025, kGorilla},
-    {"horse", 0.03, kHorse},      {"dog", 0.015, kDog},       {"giraffe", 0.03, kGiraffe},
-    {"ostrich", 0.022, kOstrich}, {"lizard", 0.015, kLizard}, {"ant", 0.015, kAnt},
+    {"person", 0.015, kPerson},     {"child", 0.012, kChild},     {"wrestler", 0.02, kWrestler},
+    {"gorilla", 0.025, kGorilla},   {"horse", 0.03, kHorse},      {"dog", 0.015, kDog},
+    {"cat", 0.008, kCat},           {"giraffe", 0.03, kGiraffe},  {"elephant", 0.035, kElephant},
+    {"kangaroo", 0.015, kKangaroo}, {"ostrich", 0.022, kOstrich}, {"lizard", 0.015, kLizard},
+    {"octopus", 0.02, kOctopus},    {"ant", 0.015, kAnt},
 };
 
 const Species& find(const std::string& name) {
@@ -229,7 +333,7 @@ Limits limits_of(const Row& row) {
 
 // Turns about x mean the same on both sides; about y and z they change sign.
 Bone mirror_image(Bone bone, int parent) {
-  bone.name += ".right";
+  bone.name += kRightSuffix;
   bone.parent = parent;
   bone.head = reflected(bone.head);
   bone.tail = reflected(bone.tail);
@@ -241,11 +345,10 @@ Bone mirror_image(Bone bone, int parent) {
   return bone;
 }
 
-// Where bones of each row end up, and their images; the same where there is none.
+// The indices of a row's bone and of its mirror image; the same where there is none.
 struct Placed {
-  const Row* row = nullptr;
-  int left = -1, right = -1;
-  double stretch = 1.0;
+  int left = -1;
+  int right = -1;
 };
 
 }  // namespace
@@ -256,30 +359,22 @@ std::vector<std::string> species_names() {
   return names;
 }
 
-Skeleton make_skeleton(const std::string& name, double variation, Random& random) {
+Skeleton make_skeleton(const std::string& name) {
   const Species& species = find(name);
   Skeleton skeleton;
   skeleton.blend = species.blend;
   std::map<std::string_view, Placed> placed;
   for (const Row& row : species.rows) {
     const Placed parent = placed[row.parent];
-    Placed& own = placed[row.name];
-    own = {&row, static_cast<int>(skeleton.bones.size()), static_cast<int>(skeleton.bones.size()),
-           1.0 + random.uniform(-variation, variation)};
-    const double thickness = 1.0 + random.uniform(-variation, variation);
-    Vector3d head = at(row.head);
-    if (parent.row != nullptr) {
-      head = skeleton.bones[static_cast<std::size_t>(parent.left)].head +
-             parent.stretch * (head - at(parent.row->head));
-    }
-    const Vector3d tail = head + own.stretch * (at(row.tail) - at(row.head));
+    const auto next = static_cast<int>(skeleton.bones.size());
     const Limits limits = limits_of(row);
-    skeleton.bones.push_back({std::string(row.name), parent.left, head, tail,
-                              thickness * row.head_radius, thickness * row.tail_radius,
-                              limits.least, limits.most});
-    if (head.x() == 0.0 && tail.x() == 0.0) continue;
-    own.right = own.left + 1;
-    skeleton.bones.push_back(mirror_image(skeleton.bones.back(), parent.right));
+    const Vector3d head = at(row.head);
+    const Vector3d tail = at(row.tail);
+    skeleton.bones.push_back({std::string(row.name), parent.left, head, tail, row.head_radius,
+                              row.tail_radius, limits.least, limits.most});
+    const bool is_middle = head.x() == 0.0 && tail.x() == 0.0;
+    placed[row.name] = {next, is_middle ? next : next + 1};
+    if (!is_middle) skeleton.bones.push_back(mirror_image(skeleton.bones.back(), parent.right));
   }
   return skeleton;
 }

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "timbre/datasets/random.h"
 #include "timbre/datasets/skeleton.h"
 
 namespace timbre {
@@ -12,9 +11,7 @@ namespace timbre {
 [[nodiscard]] std::vector<std::string> species_names();
 
 /// The skeleton of a species at rest.
-/// @param variation  bones are longer and thicker by random factors in
-///                   [1 - variation, 1 + variation], left and right alike
 /// @throws Error  bad_request for a name that `species_names` does not list
-[[nodiscard]] Skeleton make_skeleton(const std::string& species, double variation, Random& random);
+[[nodiscard]] Skeleton make_skeleton(const std::string& species);
 
 }  // namespace timbre

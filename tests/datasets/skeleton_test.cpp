@@ -11,10 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-Skeleton skeleton_of(const std::string& species) {
-  Random random("test", {1});
-  return make_skeleton(species, 0.0, random);
-}
+Skeleton skeleton_of(const std::string& species) { return make_skeleton(species); }
 
 TEST(SkinOf, HasTheGradientOfItsValueAndIsEven) {
   const ImplicitFunction skin = skin_of(skeleton_of("dog"));
@@ -40,7 +37,8 @@ TEST(TransformsOf, TurnAboutTheHeadAndCarryChildren) {
   std::size_t forearm = 0;
   while (skeleton.bones[forearm].name != "forearm") ++forearm;
   pose[forearm] = Vector3d(0.3, -std::numbers::pi / 2.0, 0.1);
-  const std::vector<Eigen::Isometry3d> transforms = transforms_of(skeleton, pose);
+  const std::vector<Eigen::Affine3d> transforms =
+      transforms_of(skeleton, pose, usual_build(skeleton));
   for (std::size_t b = 0; b < transforms.size(); ++b) {
     const Bone& bone = skeleton.bones[b];
     const bool is_hand = bone.parent == static_cast<int>(forearm);
@@ -56,7 +54,7 @@ TEST(RandomPose, KeepsTheLimits) {
   const Skeleton skeleton = skeleton_of("gorilla");
   Random random("poses", {3});
   for (int i = 0; i < 10; ++i) {
-    const Pose pose = random_pose(skeleton, random);
+    const Pose pose = random_pose(skeleton, random_build(skeleton, 0.2, random), random);
     for (std::size_t b = 0; b < pose.size(); ++b) {
       EXPECT_TRUE((pose[b].array() >= skeleton.bones[b].least.array()).all());
       EXPECT_TRUE((pose[b].array() <= skeleton.bones[b].most.array()).all());
@@ -64,19 +62,54 @@ TEST(RandomPose, KeepsTheLimits) {
   }
 }
 
-TEST(MakeSkeleton, IsSymmetricAlsoWhenVaried) {
-  Random random("varied", {5});
+TEST(MakeSkeleton, IsSymmetric) {
   for (const std::string& species : species_names()) {
-    const Skeleton skeleton = make_skeleton(species, 0.2, random);
+    const Skeleton skeleton = make_skeleton(species);
     for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
       const Bone& bone = skeleton.bones[b];
       EXPECT_LT(bone.parent, static_cast<int>(b));
-      if (bone.name != skeleton.bones[b > 0 ? b - 1 : 0].name + ".right") continue;
+      if (!bone.name.ends_with(kRightSuffix)) continue;
       const Bone& left = skeleton.bones[b - 1];
+      EXPECT_EQ(bone.name, left.name + std::string(kRightSuffix));
       EXPECT_EQ(bone.head, Vector3d(-left.head.x(), left.head.y(), left.head.z()));
       EXPECT_EQ(bone.tail, Vector3d(-left.tail.x(), left.tail.y(), left.tail.z()));
       EXPECT_EQ(bone.head_radius, left.head_radius);
     }
+  }
+}
+
+TEST(RandomBuild, IsTheSameOnBothSidesAndInRange) {
+  const Skeleton skeleton = skeleton_of("cat");
+  Random random("builds", {5});
+  const Build build = random_build(skeleton, 0.2, random);
+  for (std::size_t b = 0; b < build.size(); ++b) {
+    EXPECT_NEAR(build[b].length, 1.0, 0.2);
+    EXPECT_NEAR(build[b].thickness, 1.0, 0.2);
+    if (!skeleton.bones[b].name.ends_with(kRightSuffix)) continue;
+    EXPECT_EQ(build[b].length, build[b - 1].length);
+    EXPECT_EQ(build[b].thickness, build[b - 1].thickness);
+  }
+  EXPECT_NE(build[0].length, build[1].length);
+}
+
+TEST(TransformsOf, GrowBonesAlongAndAcrossAndMoveTheirChildren) {
+  const Skeleton skeleton = skeleton_of("person");
+  const Pose still(skeleton.bones.size(), Vector3d::Zero());
+  Build build = usual_build(skeleton);
+  std::size_t arm = 0;
+  while (skeleton.bones[arm].name != "arm") ++arm;
+  build[arm] = {.length = 1.5, .thickness = 0.8};
+  const std::vector<Eigen::Affine3d> transforms = transforms_of(skeleton, still, build);
+  const Bone& bone = skeleton.bones[arm];
+  const Vector3d axis = bone.tail - bone.head;
+  EXPECT_LT((transforms[arm] * bone.head - bone.head).norm(), 1e-12);
+  EXPECT_LT((transforms[arm] * bone.tail - (bone.head + 1.5 * axis)).norm(), 1e-12);
+  const Vector3d across = axis.cross(Vector3d::UnitY()).normalized();
+  EXPECT_LT((transforms[arm].linear() * across - 0.8 * across).norm(), 1e-12);
+  for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+    if (skeleton.bones[b].parent != static_cast<int>(arm)) continue;
+    EXPECT_LT((transforms[b].linear() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_LT((transforms[b] * bone.tail - (bone.head + 1.5 * axis)).norm(), 1e-12);
   }
 }
 

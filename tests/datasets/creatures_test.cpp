@@ -1,4 +1,4 @@
-#include "timbre/datasets/articulated.h"
+#include "timbre/datasets/creatures.h"
 
 #include <gtest/gtest.h>
 
@@ -83,11 +83,11 @@ VectorXd dna(const TriangleMesh& mesh) {
 
 class EverySpecies : public testing::TestWithParam<std::string> {
  protected:
-  const ArticulatedBody body_ = make_articulated_body(GetParam());
+  const CreatureBody body_ = make_creature_body(GetParam(), {.vertices = 3500});
 };
 
 TEST_P(EverySpecies, IsASphereTurnedOutward) {
-  const TriangleMesh& mesh = body_.rest;
+  const TriangleMesh& mesh = body_.skin.rest;
   const OrientedFaces oriented = orient_outward(mesh);
   EXPECT_EQ(oriented.orientation, Orientation::outward);
   EXPECT_EQ(oriented.faces, mesh.faces);
@@ -96,17 +96,17 @@ TEST_P(EverySpecies, IsASphereTurnedOutward) {
 }
 
 TEST_P(EverySpecies, HasAboutAsManyVerticesAsAskedAndGoodTriangles) {
-  EXPECT_NEAR(static_cast<double>(body_.rest.vertices.rows()), 3500.0, 350.0);
-  const std::vector<double> angles = least_angles(body_.rest);
+  EXPECT_NEAR(static_cast<double>(body_.skin.rest.vertices.rows()), 3500.0, 350.0);
+  const std::vector<double> angles = least_angles(body_.skin.rest);
   EXPECT_GT(angles.front(), 15.0);
   EXPECT_GT(angles[angles.size() / 100], 30.0);
 }
 
 TEST_P(EverySpecies, HasAnExactMirror) {
-  const Points& points = body_.rest.vertices;
+  const Points& points = body_.skin.rest.vertices;
   for (Index v = 0; v < points.rows(); ++v) {
-    const std::int32_t image = body_.mirror[static_cast<std::size_t>(v)];
-    ASSERT_EQ(body_.mirror[static_cast<std::size_t>(image)], v);
+    const std::int32_t image = body_.skin.mirror[static_cast<std::size_t>(v)];
+    ASSERT_EQ(body_.skin.mirror[static_cast<std::size_t>(image)], v);
     ASSERT_EQ(points(image, 0), -points(v, 0));
     ASSERT_EQ(points(image, 1), points(v, 1));
     ASSERT_EQ(points(image, 2), points(v, 2));
@@ -114,14 +114,14 @@ TEST_P(EverySpecies, HasAnExactMirror) {
 }
 
 TEST_P(EverySpecies, WeightsArePartitionsOfOne) {
-  EXPECT_GE(body_.weights.minCoeff(), 0.0);
-  EXPECT_LT((body_.weights.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-12);
+  EXPECT_GE(body_.skin.weights.minCoeff(), 0.0);
+  EXPECT_LT((body_.skin.weights.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-12);
 }
 
 TEST_P(EverySpecies, BendsWithoutMuchStretchOrFolds) {
   for (int pose = 1; pose < 6; ++pose) {
-    const TriangleMesh posed = make_articulated(body_, pose).mesh;
-    const double stretch = mean_stretch(body_.rest, posed);
+    const TriangleMesh posed = make_creature(body_, pose).mesh;
+    const double stretch = mean_stretch(body_.skin.rest, posed);
     EXPECT_GT(stretch, 0.01) << "pose " << pose;
     EXPECT_LT(stretch, 0.09) << "pose " << pose;
     EXPECT_GT(sharpest_fold(posed), -0.8) << "pose " << pose;
@@ -130,9 +130,10 @@ TEST_P(EverySpecies, BendsWithoutMuchStretchOrFolds) {
 }
 
 TEST_P(EverySpecies, IsTheSameEachTime) {
-  const ArticulatedOptions options = {.seed = 7, .variation = 0.1, .shuffle = true};
+  const CreatureOptions options = {.seed = 7, .variation = 0.1, .shuffle = true};
   const auto bytes = [&](int pose) {
-    return to_mesh_bytes(make_articulated(GetParam(), pose, options).mesh, MeshFormat::ply);
+    const CreatureBody again = make_creature_body(GetParam(), {.vertices = 3500});
+    return to_mesh_bytes(make_creature(again, pose, options).mesh, MeshFormat::ply);
   };
   EXPECT_EQ(bytes(3), bytes(3));
   EXPECT_NE(bytes(3), bytes(4));
@@ -140,10 +141,10 @@ TEST_P(EverySpecies, IsTheSameEachTime) {
 INSTANTIATE_TEST_SUITE_P(Species, EverySpecies, testing::ValuesIn(species_names()),
                          [](const auto& species) { return species.param; });
 
-TEST(MakeArticulated, ShufflesVerticesAndTellsWhere) {
-  const ArticulatedBody body = make_articulated_body("dog");
-  const ArticulatedShape plain = make_articulated(body, 2);
-  const ArticulatedShape mixed = make_articulated(body, 2, {.shuffle = true});
+TEST(MakeCreature, ShufflesVerticesAndTellsWhere) {
+  const CreatureBody body = make_creature_body("dog");
+  const Creature plain = make_creature(body, 2);
+  const Creature mixed = make_creature(body, 2, {.shuffle = true});
   const auto moved = [&](std::int32_t t) {
     return mixed.vertex_of_template[static_cast<std::size_t>(t)];
   };
@@ -160,18 +161,21 @@ TEST(MakeArticulated, ShufflesVerticesAndTellsWhere) {
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(MakeArticulated, ProportionsVaryOnlyIfAsked) {
-  const ArticulatedBody usual = make_articulated_body("horse", {.seed = 1});
-  EXPECT_EQ(make_articulated_body("horse", {.seed = 2}).rest.vertices, usual.rest.vertices);
-  const ArticulatedBody varied = make_articulated_body("horse", {.seed = 2, .variation = 0.1});
-  EXPECT_NE(varied.rest.vertices.rows(), usual.rest.vertices.rows());
+TEST(MakeCreature, IndividualsDifferOnlyIfAsked) {
+  const CreatureBody body = make_creature_body("horse");
+  const auto stretch = [&](double variation) {
+    return mean_stretch(body.skin.rest, make_creature(body, 3, {.variation = variation}).mesh);
+  };
+  EXPECT_LT(stretch(0.0), 0.05);
+  EXPECT_GT(stretch(0.25), 0.08);
+  EXPECT_EQ(make_creature(body, 0, {.variation = 0.25}).mesh.vertices, body.skin.rest.vertices);
 }
 
-TEST(MakeArticulated, SpeciesSoundMoreDifferentThanPoses) {
+TEST(MakeCreature, SpeciesSoundMoreDifferentThanPoses) {
   std::vector<VectorXd> spectra;
   for (const char* species : {"person", "horse", "ostrich"}) {
-    const ArticulatedBody body = make_articulated_body(species);
-    for (const int pose : {1, 2}) spectra.push_back(dna(make_articulated(body, pose).mesh));
+    const CreatureBody body = make_creature_body(species);
+    for (const int pose : {1, 2}) spectra.push_back(dna(make_creature(body, pose).mesh));
   }
   double within = 0.0;
   double between = 1e9;
@@ -185,18 +189,19 @@ TEST(MakeArticulated, SpeciesSoundMoreDifferentThanPoses) {
   EXPECT_GT(between, 2.0 * within);
 }
 
-TEST(MakeArticulated, RefusesWhatItCannotMake) {
-  const auto complaint = [](const std::string& species, const ArticulatedOptions& options) {
+TEST(MakeCreature, RefusesWhatItCannotMake) {
+  const auto complaint = [](const std::string& species, const CreatureOptions& options) {
     try {
-      (void)make_articulated(species, 0, options);
+      (void)make_creature(make_creature_body(species, options), 0, options);
     } catch (const Error& error) {
       return std::string(error.what());
     }
     return std::string("no exception");
   };
-  EXPECT_EQ(complaint("cow", {}),
-            "species: no 'cow'; there are person, child, gorilla, horse, dog, giraffe, ostrich, "
-            "lizard, ant");
+  EXPECT_EQ(
+      complaint("cow", {}),
+      "species: no 'cow'; there are person, child, wrestler, gorilla, horse, dog, cat, giraffe, "
+      "elephant, kangaroo, ostrich, lizard, octopus, ant");
   EXPECT_EQ(complaint("dog", {.vertices = 10}),
             "vertices: 10 asked for; 1000 to 50000 are possible");
   EXPECT_EQ(complaint("ant", {.vertices = 1000}),

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "timbre/analysis/geodesic/detail/window.h"
+#include "timbre/analysis/geodesic/geodesic_mesh.h"
+
+namespace timbre::detail {
+
+/// Spreads windows over a mesh, nearest first. Each edge keeps a list of windows that do not
+/// overlap, of which each is the nearest known on its stretch; a list goes when the front has
+/// passed its edge. Lengths are those of the prepared mesh.
+///
+/// All distances it holds are lengths of paths: rounding can make them too long by a little,
+/// never too short by more than that.
+class Wavefront {
+ public:
+  explicit Wavefront(const GeodesicMesh& mesh);
+
+  /// Spreads from `sources` until all `targets` are final, or without any, until nothing is
+  /// left; in both cases not beyond `limit`. Costs as much as what the front passes.
+  void run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
+           double limit);
+
+  /// Of a vertex, after `run`; infinite where the front did not get.
+  [[nodiscard]] double distance(std::int32_t vertex) const {
+    const double found = vertices_[static_cast<std::size_t>(vertex)].distance;
+    return found <= passed_ ? found : std::numeric_limits<double>::infinity();
+  }
+  /// The vertices that `run` came near, each once.
+  [[nodiscard]] std::span<const std::int32_t> touched() const { return touched_vertices_; }
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  struct VertexState {
+    double distance = kInfinity;
+    double spread = kInfinity;  ///< the distance its neighbours were told; infinite: none yet
+    bool target = false;
+  };
+  struct EdgeState {
+    std::int32_t first = kNone;  ///< of its windows, in order
+    double closes = kInfinity;   ///< the front's distance from which nothing better comes
+    bool touched = false;
+  };
+  struct Slot {
+    Window window;
+    std::int32_t next = kNone;  ///< on the edge, or among free slots
+    bool listed = false;
+    bool queued = false;
+  };
+  enum class EventKind : std::uint8_t { window, vertex, edge };
+  struct Event {
+    double at = 0.0;
+    EventKind kind = EventKind::window;
+    std::int32_t index = 0;
+  };
+  /// Where a window is being put into an edge's list.
+  struct Place {
+    std::int32_t edge = 0;
+    std::int32_t previous = kNone;
+    std::int32_t next = kNone;
+    std::int32_t last_put = kNone;
+  };
+
+  void reset();
+  void set_targets(std::span<const std::int32_t> targets, double limit);
+  void handle(const Event& event);
+  void push(double at, EventKind kind, std::int32_t index);
+
+  void lower(std::int32_t vertex, double distance);
+  void spread_vertex(std::int32_t vertex);
+  void lower_horizon();
+  void send_from(std::int32_t vertex);
+  void expect_closing(std::int32_t edge);
+
+  void cross_edge(const Window& window);
+  void cross_triangle(const Window& window, std::int32_t side);
+  [[nodiscard]] bool can_matter(const Window& window) const;
+  void add(const Window& window);
+  void insert(Window fresh, std::int32_t edge);
+  void settle_overlap(Window& fresh, Place& place, double least);
+  void put(const Window& fresh, double begin, double end, Place& place);
+  void give_up_stretch(double begin, double end, double least, Place& place);
+
+  std::int32_t take_slot(const Window& window);
+  void unlink_next(Place& place);
+  void link(std::int32_t slot, Place& place);
+  void close_edge(std::int32_t edge);
+
+  Slot& slot(std::int32_t index) { return slots_[static_cast<std::size_t>(index)]; }
+  EdgeState& edge_state(std::int32_t edge) { return edges_[static_cast<std::size_t>(edge)]; }
+
+  const GeodesicMesh& mesh_;
+  std::vector<VertexState> vertices_;
+  std::vector<EdgeState> edges_;
+  std::vector<std::int32_t> touched_vertices_;
+  std::vector<std::int32_t> touched_edges_;
+  std::vector<Slot> slots_;
+  std::int32_t free_slot_ = kNone;
+  std::vector<Event> events_;  ///< a heap
+  std::vector<std::int32_t> fresh_slots_;
+  std::vector<std::int32_t> targets_;
+  std::int64_t targets_left_ = 0;
+  double horizon_ = kInfinity;  ///< nothing farther is of interest
+  double front_ = 0.0;          ///< distance of the event at hand
+  double passed_ = 0.0;         ///< distances up to here are final
+};
+
+}  // namespace timbre::detail

@@ -48,7 +48,9 @@ Eigen::VectorXd ExactGeodesics::distances(std::span<const std::int32_t> sources,
                                           const ExactOptions& options) {
   impl_->run(sources, options.targets, options.limit);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(impl_->mesh.size(), kInfinity);
-  for (const std::int32_t v : impl_->front.touched()) {
+  const std::span<const std::int32_t> wanted =
+      options.targets.empty() ? impl_->front.touched() : options.targets;
+  for (const std::int32_t v : wanted) {
     result[v] = impl_->front.distance(v) * impl_->mesh.unit;
   }
   return result;

@@ -12,8 +12,8 @@
 namespace timbre {
 
 struct ExactOptions {
-  /// Stop when the distances of these are final; empty: go on to all vertices. Distances that
-  /// are not known to be final by then are infinite.
+  /// Only the distances of these are wanted, all others are left infinite; empty: all vertices.
+  /// Near ones are found at once, and far ones by looking only where the way may lead.
   std::vector<std::int32_t> targets = {};
   /// Farther vertices are infinite; in the mesh's unit, at least 0.
   double limit = std::numeric_limits<double>::infinity();

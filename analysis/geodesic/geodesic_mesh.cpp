@@ -154,13 +154,14 @@ void find_bends(GeodesicMesh& mesh) {
 
 GeodesicMesh make_geodesic_mesh(const TriangleMesh& mesh) {
   GeodesicMesh result;
-  const TriangleMesh scaled = at_unit_size(mesh, result.unit);
+  TriangleMesh scaled = at_unit_size(mesh, result.unit);
   const std::vector<TriangleSide> sides = sides_without_copies(scaled.faces);
   add_edges(scaled.vertices, sides, result);
   link_triangles(sides, scaled.faces.rows(), result);
   list_corners(static_cast<std::size_t>(mesh.vertices.rows()), result);
   find_bends(result);
   result.graph = make_geodesic_graph(scaled);
+  result.vertices = std::move(scaled.vertices);
   return result;
 }
 

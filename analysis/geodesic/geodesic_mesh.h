@@ -31,6 +31,7 @@ struct GeodesicMesh {
     double y = 0.0;  ///< >= 0
   };
 
+  Points vertices;  ///< n x 3, moved near the origin
   std::vector<Edge> edges;
   std::vector<Side> sides;                 ///< sorted by edge
   std::vector<std::int32_t> corner_start;  ///< n + 1: v is the apex of sides

@@ -15,8 +15,8 @@ std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 constexpr double kTie = 1e-14;
 // Narrower windows, in edge lengths, are left to their neighbours.
 constexpr double kThinnest = 1e-12;
-// With more targets, watching how far they are costs more than it saves.
-constexpr std::size_t kMostWatchedTargets = 64;
+// With more targets, looking where each lies costs more than it saves.
+constexpr std::size_t kMostTargets = 64;
 
 // The nearest event on top of the heap. Ties by kind and index, to be deterministic.
 constexpr auto kLater = [](const auto& a, const auto& b) {
@@ -24,6 +24,9 @@ constexpr auto kLater = [](const auto& a, const auto& b) {
   if (a.kind != b.kind) return a.kind > b.kind;
   return a.index > b.index;
 };
+
+// Straight distances to targets are rounded otherwise than paths.
+constexpr double kTargetSlack = 1e-12;
 
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
 
@@ -36,45 +39,68 @@ Wavefront::Wavefront(const GeodesicMesh& mesh)
 void Wavefront::reset() {
   for (const std::int32_t v : touched_vertices_) vertices_[at(v)] = {};
   for (const std::int32_t e : touched_edges_) edges_[at(e)] = {};
-  for (const std::int32_t v : targets_) vertices_[at(v)] = {};
   touched_vertices_.clear();
   touched_edges_.clear();
   targets_.clear();
+  bounds_.clear();
   slots_.clear();
   events_.clear();
   free_slot_ = kNone;
-  front_ = 0.0;
-}
-
-void Wavefront::set_targets(std::span<const std::int32_t> targets, double limit) {
-  for (const std::int32_t v : targets) {
-    if (vertices_[at(v)].target) continue;
-    vertices_[at(v)].target = true;
-    targets_.push_back(v);
-  }
-  targets_left_ = std::ssize(targets_);
-  horizon_ = limit;
 }
 
 void Wavefront::run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
                     double limit) {
   reset();
-  set_targets(targets, limit);
-  for (const std::int32_t source : sources) lower(source, 0.0);
-  passed_ = kInfinity;
-  while (!events_.empty()) {
-    const Event event = events_.front();
-    if (event.at > horizon_) break;
-    std::pop_heap(events_.begin(), events_.end(), kLater);
-    events_.pop_back();
-    front_ = event.at;
-    handle(event);
-    if (targets_left_ == 0 && !targets_.empty()) {
-      passed_ = front_;
-      break;
+  limit_ = limit;
+  horizon_ = limit;
+  if (!targets.empty() && targets.size() <= kMostTargets) {
+    // Twice: paths of the graph are a few per cent longer than the shortest.
+    horizon_ = 2.0 * limit;
+    only_graph_ = true;
+    for (const std::int32_t source : sources) lower(source, 0.0);
+    bound_targets(targets, limit);
+    only_graph_ = false;
+    if (targets_.empty()) return;
+    for (const std::int32_t v : touched_vertices_) {
+      vertices_[at(v)].spread = kInfinity;
+      push(vertices_[at(v)].distance, EventKind::vertex, v);
     }
+  } else {
+    for (const std::int32_t source : sources) lower(source, 0.0);
   }
-  passed_ = std::min(passed_, horizon_);
+  spread_all();
+}
+
+// Paths of the graph to all targets. Once there are such, only shorter ones are of interest.
+void Wavefront::bound_targets(std::span<const std::int32_t> targets, double limit) {
+  std::vector<std::int32_t> left(targets.begin(), targets.end());
+  const auto is_final = [this](std::int32_t v) { return vertices_[at(v)].spread != kInfinity; };
+  while (!events_.empty() && !left.empty()) {
+    const std::int32_t vertex = events_.front().index;
+    spread_next();
+    if (vertex == left.back()) std::erase_if(left, is_final);
+  }
+  events_.clear();
+  horizon_ = 0.0;
+  for (const std::int32_t v : targets) {
+    const double bound = std::min(vertices_[at(v)].distance, limit);
+    if (bound == kInfinity) continue;  // on another component
+    targets_.push_back(v);
+    bounds_.push_back(bound);
+    horizon_ = std::max(horizon_, bound);
+  }
+}
+
+void Wavefront::spread_all() {
+  while (!events_.empty()) spread_next();
+}
+
+void Wavefront::spread_next() {
+  const Event event = events_.front();
+  std::pop_heap(events_.begin(), events_.end(), kLater);
+  events_.pop_back();
+  front_ = event.at;
+  handle(event);
 }
 
 void Wavefront::handle(const Event& event) {
@@ -99,41 +125,44 @@ void Wavefront::push(double at_distance, EventKind kind, std::int32_t index) {
   std::push_heap(events_.begin(), events_.end(), kLater);
 }
 
+void Wavefront::touch(std::int32_t vertex) {
+  VertexState& state = vertices_[at(vertex)];
+  if (state.touched) return;
+  state.touched = true;
+  touched_vertices_.push_back(vertex);
+}
+
 void Wavefront::lower(std::int32_t vertex, double distance) {
   VertexState& state = vertices_[at(vertex)];
   if (!(distance < state.distance)) return;
-  if (state.distance == kInfinity) touched_vertices_.push_back(vertex);
+  touch(vertex);
   state.distance = distance;
   // What its neighbours were told stays true to rounding.
   if (distance < state.spread - kTie) push(distance, EventKind::vertex, vertex);
-  if (state.target && targets_.size() <= kMostWatchedTargets) lower_horizon();
-}
-
-// Once there is a path to each target, only shorter ones are of interest.
-void Wavefront::lower_horizon() {
-  double farthest = 0.0;
-  for (const std::int32_t v : targets_) farthest = std::max(farthest, vertices_[at(v)].distance);
-  horizon_ = std::min(horizon_, farthest);
 }
 
 void Wavefront::spread_vertex(std::int32_t vertex) {
   VertexState& state = vertices_[at(vertex)];
-  const double distance = state.distance;
-  if (front_ > distance || !(distance < state.spread - kTie)) return;  // told already
-  if (state.target && state.spread == kInfinity) --targets_left_;
-  state.spread = distance;
-  const GeodesicGraph& graph = mesh_.graph;
-  for (auto e = static_cast<std::size_t>(graph.start[at(vertex)]);
-       e < static_cast<std::size_t>(graph.start[at(vertex) + 1]); ++e) {
-    lower(graph.neighbour[e], distance + graph.length[e]);
-  }
+  if (front_ > state.distance || !(state.distance < state.spread - kTie)) return;  // told already
+  state.spread = state.distance;
+  tell_neighbours(vertex);
+  if (only_graph_) return;
   for (std::int32_t c = mesh_.corner_start[at(vertex)]; c < mesh_.corner_start[at(vertex) + 1];
        ++c) {
     const GeodesicMesh::Side& side = mesh_.sides[at(mesh_.corner_sides[at(c)])];
     expect_closing(mesh_.sides[at(side.low_side)].edge);
     expect_closing(mesh_.sides[at(side.high_side)].edge);
   }
-  if (distance == 0.0 || mesh_.bends[at(vertex)] != 0) send_from(vertex);
+  if (state.distance == 0.0 || mesh_.bends[at(vertex)] != 0) send_from(vertex);
+}
+
+void Wavefront::tell_neighbours(std::int32_t vertex) {
+  const GeodesicGraph& graph = mesh_.graph;
+  const double distance = vertices_[at(vertex)].distance;
+  for (auto e = static_cast<std::size_t>(graph.start[at(vertex)]);
+       e < static_cast<std::size_t>(graph.start[at(vertex) + 1]); ++e) {
+    lower(graph.neighbour[e], distance + graph.length[e]);
+  }
 }
 
 // When both ends are known, no point of the edge is farther than half way round through them.
@@ -217,37 +246,83 @@ bool Wavefront::can_matter(const Window& window) const {
            vertices_[at(edge.high)].distance + (edge.length - window.begin) + kTie);
 }
 
+// Whether a path through the window, straight on in space, could be the shortest to a target.
+bool Wavefront::leads_to_target(const Window& window, double nearest) {
+  if (targets_.empty()) return true;
+  const GeodesicMesh::Edge& edge = mesh_.edges[at(mesh_.sides[at(window.side)].edge)];
+  const double from_low = detour(edge.low) - window.end;
+  const double from_high = detour(edge.high) - (edge.length - window.begin);
+  return nearest + std::max(from_low, from_high) <= kTargetSlack;
+}
+
+double Wavefront::detour(std::int32_t vertex) {
+  VertexState& state = vertices_[at(vertex)];
+  if (state.detour != -kInfinity) return state.detour;
+  touch(vertex);
+  state.detour = kInfinity;
+  const Eigen::RowVector3d here = mesh_.vertices.row(vertex);
+  for (std::size_t t = 0; t < targets_.size(); ++t) {
+    const double straight = (mesh_.vertices.row(targets_[t]) - here).norm();
+    state.detour = std::min(state.detour, straight - bounds_[t]);
+  }
+  return state.detour;
+}
+
 void Wavefront::add(const Window& window) {
   const std::int32_t edge = mesh_.sides[at(window.side)].edge;
   EdgeState& state = edge_state(edge);
   // A source in the line of the edge shows nothing beyond it.
   if (front_ >= state.closes || !(window.y > 0.0)) return;
-  if (!can_matter(window)) return;
+  if (!can_matter(window) || !leads_to_target(window, window.nearest())) return;
   if (!state.touched) touched_edges_.push_back(edge);
   state.touched = true;
   insert(window, edge);
 }
 
-void Wavefront::insert(Window fresh, std::int32_t edge) {
-  const double least = kThinnest * mesh_.edges[at(edge)].length;
-  Place place{edge, kNone, edge_state(edge).first, kNone};
-  fresh_slots_.clear();
-  while (fresh.end - fresh.begin > least) {
-    if (place.next == kNone || slot(place.next).window.begin >= fresh.end) {
-      put(fresh, fresh.begin, fresh.end, place);
-      break;
-    }
-    const Window& old = slot(place.next).window;
-    if (old.end <= fresh.begin) {
+// Before the first window that reaches beyond `begin`. A front that crosses an edge does so
+// from its nearest point outwards, so that the place is mostly near one of the ends.
+Wavefront::Place Wavefront::find_place(std::int32_t edge, double begin, double least) {
+  const EdgeState& state = edge_state(edge);
+  Place place{edge, kNone, state.first, kNone};
+  if (state.first == kNone) return place;
+  const double middle =
+      0.5 * (slot(state.first).window.begin + slot(state.last).window.end);
+  if (begin < middle) {
+    while (place.next != kNone && slot(place.next).window.end - begin <= least) {
       place.previous = place.next;
       place.next = slot(place.next).next;
-    } else if (fresh.begin < old.begin) {
-      const double until = old.begin;
-      if (until - fresh.begin > least) put(fresh, fresh.begin, until, place);
-      fresh.begin = until;
-    } else {
-      settle_overlap(fresh, place, least);
     }
+    return place;
+  }
+  place.previous = state.last;
+  place.next = kNone;
+  while (place.previous != kNone && slot(place.previous).window.end - begin > least) {
+    place.next = place.previous;
+    place.previous = slot(place.previous).previous;
+  }
+  return place;
+}
+
+void Wavefront::insert(Window fresh, std::int32_t edge) {
+  const double least = kThinnest * mesh_.edges[at(edge)].length;
+  Place place = find_place(edge, fresh.begin, least);
+  fresh_slots_.clear();
+  // Neighbours share their ends to rounding only.
+  if (place.previous != kNone) {
+    fresh.begin = std::max(fresh.begin, slot(place.previous).window.end);
+  }
+  while (fresh.end - fresh.begin > least) {
+    const double next_begin =
+        place.next == kNone ? kInfinity : slot(place.next).window.begin;
+    if (fresh.end - next_begin <= least) {
+      put(fresh, fresh.begin, std::min(fresh.end, next_begin), place);
+      break;
+    }
+    if (fresh.begin < next_begin) {
+      if (next_begin - fresh.begin > least) put(fresh, fresh.begin, next_begin, place);
+      fresh.begin = next_begin;
+    }
+    settle_overlap(fresh, place, least);
   }
   for (const std::int32_t index : fresh_slots_) {
     const double nearest = slot(index).window.nearest();
@@ -330,29 +405,32 @@ std::int32_t Wavefront::take_slot(const Window& window) {
   } else {
     free_slot_ = slot(index).next;
   }
-  slot(index) = {window, kNone, false, false};
+  slot(index) = {window, kNone, kNone, false, false};
   return index;
 }
 
 void Wavefront::link(std::int32_t index, Place& place) {
+  EdgeState& state = edge_state(place.edge);
   slot(index).listed = true;
+  slot(index).previous = place.previous;
   slot(index).next = place.next;
-  (place.previous == kNone ? edge_state(place.edge).first : slot(place.previous).next) = index;
+  (place.previous == kNone ? state.first : slot(place.previous).next) = index;
+  (place.next == kNone ? state.last : slot(place.next).previous) = index;
   place.previous = index;
 }
 
 void Wavefront::unlink_next(Place& place) {
+  EdgeState& state = edge_state(place.edge);
   const std::int32_t index = place.next;
   place.next = slot(index).next;
-  (place.previous == kNone ? edge_state(place.edge).first : slot(place.previous).next) =
-      place.next;
+  (place.previous == kNone ? state.first : slot(place.previous).next) = place.next;
+  (place.next == kNone ? state.last : slot(place.next).previous) = place.previous;
   slot(index).listed = false;
   if (!slot(index).queued) slot(index).next = std::exchange(free_slot_, index);
 }
 
 void Wavefront::close_edge(std::int32_t edge) {
-  EdgeState& state = edge_state(edge);
-  Place place{edge, kNone, state.first, kNone};
+  Place place{edge, kNone, edge_state(edge).first, kNone};
   while (place.next != kNone) unlink_next(place);
 }
 

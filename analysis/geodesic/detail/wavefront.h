@@ -20,15 +20,15 @@ class Wavefront {
  public:
   explicit Wavefront(const GeodesicMesh& mesh);
 
-  /// Spreads from `sources` until all `targets` are final, or without any, until nothing is
-  /// left; in both cases not beyond `limit`. Costs as much as what the front passes.
+  /// Spreads from `sources` to everything within `limit`; with targets, only where shortest
+  /// paths to these may run. Costs as much as what the front passes.
   void run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
            double limit);
 
-  /// Of a vertex, after `run`; infinite where the front did not get.
+  /// Of a vertex (with targets, of a target), after `run`; infinite beyond the limit.
   [[nodiscard]] double distance(std::int32_t vertex) const {
     const double found = vertices_[static_cast<std::size_t>(vertex)].distance;
-    return found <= passed_ ? found : std::numeric_limits<double>::infinity();
+    return found <= limit_ ? found : std::numeric_limits<double>::infinity();
   }
   /// The vertices that `run` came near, each once.
   [[nodiscard]] std::span<const std::int32_t> touched() const { return touched_vertices_; }
@@ -40,16 +40,19 @@ class Wavefront {
   struct VertexState {
     double distance = kInfinity;
     double spread = kInfinity;  ///< the distance its neighbours were told; infinite: none yet
-    bool target = false;
+    double detour = -kInfinity;  ///< least of straight distance to a target minus what is known
+    bool touched = false;
   };
   struct EdgeState {
     std::int32_t first = kNone;  ///< of its windows, in order
+    std::int32_t last = kNone;
     double closes = kInfinity;   ///< the front's distance from which nothing better comes
     bool touched = false;
   };
   struct Slot {
     Window window;
-    std::int32_t next = kNone;  ///< on the edge, or among free slots
+    std::int32_t previous = kNone;  ///< on the edge
+    std::int32_t next = kNone;      ///< on the edge, or among free slots
     bool listed = false;
     bool queued = false;
   };
@@ -68,21 +71,27 @@ class Wavefront {
   };
 
   void reset();
-  void set_targets(std::span<const std::int32_t> targets, double limit);
+  void bound_targets(std::span<const std::int32_t> targets, double limit);
+  void spread_all();
+  void spread_next();
   void handle(const Event& event);
   void push(double at, EventKind kind, std::int32_t index);
 
   void lower(std::int32_t vertex, double distance);
+  void touch(std::int32_t vertex);
   void spread_vertex(std::int32_t vertex);
-  void lower_horizon();
+  void tell_neighbours(std::int32_t vertex);
   void send_from(std::int32_t vertex);
   void expect_closing(std::int32_t edge);
 
   void cross_edge(const Window& window);
   void cross_triangle(const Window& window, std::int32_t side);
   [[nodiscard]] bool can_matter(const Window& window) const;
+  [[nodiscard]] bool leads_to_target(const Window& window, double nearest);
+  [[nodiscard]] double detour(std::int32_t vertex);
   void add(const Window& window);
   void insert(Window fresh, std::int32_t edge);
+  [[nodiscard]] Place find_place(std::int32_t edge, double begin, double least);
   void settle_overlap(Window& fresh, Place& place, double least);
   void put(const Window& fresh, double begin, double end, Place& place);
   void give_up_stretch(double begin, double end, double least, Place& place);
@@ -104,11 +113,12 @@ class Wavefront {
   std::int32_t free_slot_ = kNone;
   std::vector<Event> events_;  ///< a heap
   std::vector<std::int32_t> fresh_slots_;
-  std::vector<std::int32_t> targets_;
-  std::int64_t targets_left_ = 0;
+  std::vector<std::int32_t> targets_;  ///< with a path to each
+  std::vector<double> bounds_;         ///< length of that path
   double horizon_ = kInfinity;  ///< nothing farther is of interest
   double front_ = 0.0;          ///< distance of the event at hand
-  double passed_ = 0.0;         ///< distances up to here are final
+  double limit_ = kInfinity;
+  bool only_graph_ = false;  ///< spread from vertex to vertex, without windows
 };
 
 }  // namespace timbre::detail

@@ -139,8 +139,7 @@ void find_bends(GeodesicMesh& mesh) {
       mesh.bends[at(edge.low)] = mesh.bends[at(edge.high)] = mesh.bends[at(side.apex)] = 1;
     }
     const double past = edge.length - side.x;
-    angle[at(side.apex)] +=
-        std::atan2(side.y * edge.length, side.y * side.y - side.x * past);
+    angle[at(side.apex)] += std::atan2(side.y * edge.length, side.y * side.y - side.x * past);
   }
   for (std::size_t v = 0; v < n; ++v) {
     if (mesh.corner_start[v] == mesh.corner_start[v + 1] || mesh.bends[v] != 0) continue;

@@ -33,7 +33,8 @@ double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
 }  // namespace
 
 Wavefront::Wavefront(const GeodesicMesh& mesh)
-    : mesh_(mesh), vertices_(at(static_cast<std::int32_t>(mesh.size()))),
+    : mesh_(mesh),
+      vertices_(at(static_cast<std::int32_t>(mesh.size()))),
       edges_(mesh.edges.size()) {}
 
 void Wavefront::reset() {
@@ -200,14 +201,15 @@ void Wavefront::cross_triangle(const Window& window, std::int32_t s) {
   const GeodesicMesh::Side& side = mesh_.sides[at(s)];
   const GeodesicMesh::Edge& edge = mesh_.edges[at(side.edge)];
   const double height = window.y + side.y;
-  const double split = (window.x * side.y + side.x * window.y) / height;
+  const bool flat = !(height > 0.0);  // the source and all corners are in one line
+  const double split = flat ? side.x : (window.x * side.y + side.x * window.y) / height;
+  if (!(window.y > 0.0) && (window.x < window.begin || window.x > window.end)) return;
   // Straight to the apex where the window shows it; else the path is bent at the window's end,
   // and an upper bound: an apex that is missed by rounding loses nothing by that.
   const double enters = std::clamp(split, window.begin, window.end);
-  const double to_apex = enters == split
-                             ? length_of(window.x - side.x, height)
-                             : length_of(window.x - enters, window.y) +
-                                   length_of(side.x - enters, side.y);
+  const double to_apex = enters == split && !flat ? length_of(window.x - side.x, height)
+                                                  : length_of(window.x - enters, window.y) +
+                                                        length_of(side.x - enters, side.y);
   lower(side.apex, window.base + to_apex);
 
   const auto show = [&](const Crossing& crossing, std::int32_t corner, std::int32_t seen) {
@@ -215,7 +217,13 @@ void Wavefront::cross_triangle(const Window& window, std::int32_t s) {
     if (!(met.length > 0.0)) return;
     Window shown = window;
     shown.side = seen;
-    see_through(crossing, met.length, shown);
+    if (flat) {
+      shown.begin = 0.0;
+      shown.end = met.length;
+      shown.x = crossing.x;
+    } else {
+      see_through(crossing, met.length, shown);
+    }
     if (met.low != corner) {
       const double begin = met.length - shown.end;
       shown.end = met.length - shown.begin;
@@ -230,8 +238,7 @@ void Wavefront::cross_triangle(const Window& window, std::int32_t s) {
   }
   if (window.end > split) {
     const double l = edge.length;
-    show({l - window.x, window.y, l - side.x, side.y, l - split, l - window.end,
-          l - window.begin},
+    show({l - window.x, window.y, l - side.x, side.y, l - split, l - window.end, l - window.begin},
          edge.high, side.high_side);
   }
 }
@@ -240,8 +247,7 @@ void Wavefront::cross_triangle(const Window& window, std::int32_t s) {
 // the window's far end, it is so everywhere in it (Xin and Wang 2009, section 3.2).
 bool Wavefront::can_matter(const Window& window) const {
   const GeodesicMesh::Edge& edge = mesh_.edges[at(mesh_.sides[at(window.side)].edge)];
-  return !(window.distance_at(window.end) >
-           vertices_[at(edge.low)].distance + window.end + kTie) &&
+  return !(window.distance_at(window.end) > vertices_[at(edge.low)].distance + window.end + kTie) &&
          !(window.distance_at(window.begin) >
            vertices_[at(edge.high)].distance + (edge.length - window.begin) + kTie);
 }
@@ -271,8 +277,9 @@ double Wavefront::detour(std::int32_t vertex) {
 void Wavefront::add(const Window& window) {
   const std::int32_t edge = mesh_.sides[at(window.side)].edge;
   EdgeState& state = edge_state(edge);
-  // A source in the line of the edge shows nothing beyond it.
-  if (front_ >= state.closes || !(window.y > 0.0)) return;
+  if (front_ >= state.closes) return;
+  // A source in the line of the edge shows something beyond it only from between its ends.
+  if (!(window.y > 0.0) && !(window.begin < window.x && window.x < window.end)) return;
   if (!can_matter(window) || !leads_to_target(window, window.nearest())) return;
   if (!state.touched) touched_edges_.push_back(edge);
   state.touched = true;
@@ -285,8 +292,7 @@ Wavefront::Place Wavefront::find_place(std::int32_t edge, double begin, double l
   const EdgeState& state = edge_state(edge);
   Place place{edge, kNone, state.first, kNone};
   if (state.first == kNone) return place;
-  const double middle =
-      0.5 * (slot(state.first).window.begin + slot(state.last).window.end);
+  const double middle = 0.5 * (slot(state.first).window.begin + slot(state.last).window.end);
   if (begin < middle) {
     while (place.next != kNone && slot(place.next).window.end - begin <= least) {
       place.previous = place.next;
@@ -312,8 +318,7 @@ void Wavefront::insert(Window fresh, std::int32_t edge) {
     fresh.begin = std::max(fresh.begin, slot(place.previous).window.end);
   }
   while (fresh.end - fresh.begin > least) {
-    const double next_begin =
-        place.next == kNone ? kInfinity : slot(place.next).window.begin;
+    const double next_begin = place.next == kNone ? kInfinity : slot(place.next).window.begin;
     if (fresh.end - next_begin <= least) {
       put(fresh, fresh.begin, std::min(fresh.end, next_begin), place);
       break;

@@ -39,14 +39,14 @@ class Wavefront {
 
   struct VertexState {
     double distance = kInfinity;
-    double spread = kInfinity;  ///< the distance its neighbours were told; infinite: none yet
+    double spread = kInfinity;   ///< the distance its neighbours were told; infinite: none yet
     double detour = -kInfinity;  ///< least of straight distance to a target minus what is known
     bool touched = false;
   };
   struct EdgeState {
     std::int32_t first = kNone;  ///< of its windows, in order
     std::int32_t last = kNone;
-    double closes = kInfinity;   ///< the front's distance from which nothing better comes
+    double closes = kInfinity;  ///< the front's distance from which nothing better comes
     bool touched = false;
   };
   struct Slot {
@@ -115,8 +115,8 @@ class Wavefront {
   std::vector<std::int32_t> fresh_slots_;
   std::vector<std::int32_t> targets_;  ///< with a path to each
   std::vector<double> bounds_;         ///< length of that path
-  double horizon_ = kInfinity;  ///< nothing farther is of interest
-  double front_ = 0.0;          ///< distance of the event at hand
+  double horizon_ = kInfinity;         ///< nothing farther is of interest
+  double front_ = 0.0;                 ///< distance of the event at hand
   double limit_ = kInfinity;
   bool only_graph_ = false;  ///< spread from vertex to vertex, without windows
 };

@@ -17,8 +17,7 @@ Roots equal_distances(const Window& first, const Window& second) {
   const double apart = first.x - second.x;
   const double lead = second.base - first.base;
   // With t = position - second.x:  constant - 2 apart t = 2 lead |p - second|.
-  const double constant =
-      apart * apart + (first.y - second.y) * (first.y + second.y) - lead * lead;
+  const double constant = apart * apart + (first.y - second.y) * (first.y + second.y) - lead * lead;
   const double a = 4.0 * (apart - lead) * (apart + lead);
   const double half_b = -2.0 * apart * constant;
   const double c = (constant - 2.0 * lead * second.y) * (constant + 2.0 * lead * second.y);

@@ -30,7 +30,7 @@ struct Window {
 /// Parts of a stretch that fall to either of two windows; at most three.
 struct Contest {
   int parts = 0;
-  std::array<double, 4> cut{};   ///< part i is [cut[i], cut[i + 1]]
+  std::array<double, 4> cut{};  ///< part i is [cut[i], cut[i + 1]]
   std::array<bool, 3> first{};  ///< whether it falls to the first window
 };
 

@@ -26,13 +26,15 @@ struct ExactGeodesics::Impl {
   explicit Impl(const GeodesicMesh& prepared) : mesh(prepared), front(prepared) {}
 
   void run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
-           double limit) {
+           double limit, const std::function<bool()>& keep_going) {
     require_vertices(mesh, sources, "sources");
     require_vertices(mesh, targets, "targets");
     if (!(limit >= 0.0)) {
       throw Error(ErrorKind::bad_request, "", "limit", "is a distance, at least 0");
     }
-    front.run(sources, targets, limit / mesh.unit);
+    if (!front.run(sources, targets, limit / mesh.unit, keep_going)) {
+      throw Error(ErrorKind::cancelled, "", "distances", "stopped");
+    }
   }
 
   const GeodesicMesh& mesh;
@@ -46,7 +48,7 @@ ExactGeodesics& ExactGeodesics::operator=(ExactGeodesics&&) noexcept = default;
 
 Eigen::VectorXd ExactGeodesics::distances(std::span<const std::int32_t> sources,
                                           const ExactOptions& options) {
-  impl_->run(sources, options.targets, options.limit);
+  impl_->run(sources, options.targets, options.limit, options.keep_going);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(impl_->mesh.size(), kInfinity);
   const std::span<const std::int32_t> wanted =
       options.targets.empty() ? impl_->front.touched() : options.targets;
@@ -61,7 +63,7 @@ std::vector<double> ExactGeodesics::distances_to(std::span<const std::int32_t> s
                                                  double limit) {
   std::vector<double> result;
   if (targets.empty()) return result;
-  impl_->run(sources, targets, limit);
+  impl_->run(sources, targets, limit, {});
   result.reserve(targets.size());
   for (const std::int32_t v : targets) {
     result.push_back(impl_->front.distance(v) * impl_->mesh.unit);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -17,6 +18,8 @@ struct ExactOptions {
   std::vector<std::int32_t> targets = {};
   /// Farther vertices are infinite; in the mesh's unit, at least 0.
   double limit = std::numeric_limits<double>::infinity();
+  /// Asked now and then, on the thread of the call; false stops it. May be empty.
+  std::function<bool()> keep_going = {};
 };
 
 /// Exact distances on the surface made of the mesh's flat triangles.
@@ -40,7 +43,8 @@ class ExactGeodesics {
 
   /// n, distance of every vertex to the nearest of `sources` (all 0 apart from each other);
   /// infinite where none is reached. Never above `graph_distances`, but for rounding.
-  /// @throws Error  bad_request for a source or target that is no vertex, or a bad limit
+  /// @throws Error  bad_request for a source or target that is no vertex, or a bad limit;
+  ///                cancelled
   [[nodiscard]] Eigen::VectorXd distances(std::span<const std::int32_t> sources,
                                           const ExactOptions& options = {});
 

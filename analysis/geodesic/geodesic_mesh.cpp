@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "timbre/analysis/geodesic/detail/unit_size.h"
 #include "timbre/analysis/mesh/sides.h"
 
 namespace timbre {
@@ -22,29 +22,6 @@ constexpr double kFullAngle = 2.0 * std::numbers::pi;
 constexpr double kAngleSlack = 1e-10;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
-
-// The mesh near the origin, of a size near 1. Powers of two round nothing.
-TriangleMesh at_unit_size(const TriangleMesh& mesh, double& unit) {
-  TriangleMesh result = mesh;
-  unit = 1.0;
-  if (mesh.vertices.size() == 0) return result;
-  const double most = mesh.vertices.cwiseAbs().maxCoeff();
-  if (most == 0.0) return result;
-  // In two steps: the first keeps differences below overflow.
-  int exponent = std::ilogb(most) + 2;
-  for (double& x : result.vertices.reshaped()) x = std::ldexp(x, -exponent);
-  const RowVector3d corner = result.vertices.colwise().minCoeff();
-  result.vertices.rowwise() -= corner;
-  const double extent = result.vertices.maxCoeff();
-  const int second = extent > 0.0 ? std::ilogb(extent) : 0;
-  // The unit must be a number itself.
-  const int limit = std::numeric_limits<double>::min_exponent - 1;
-  const int down = std::max(second, limit - exponent);
-  for (double& x : result.vertices.reshaped()) x = std::ldexp(x, -down);
-  exponent += down;
-  unit = std::ldexp(1.0, exponent);
-  return result;
-}
 
 std::vector<TriangleSide> sides_without_copies(const Faces& faces) {
   std::vector<TriangleSide> sides = sorted_sides(faces);
@@ -153,7 +130,9 @@ void find_bends(GeodesicMesh& mesh) {
 
 GeodesicMesh make_geodesic_mesh(const TriangleMesh& mesh) {
   GeodesicMesh result;
-  TriangleMesh scaled = at_unit_size(mesh, result.unit);
+  detail::UnitSizeMesh sized = detail::at_unit_size(mesh);
+  result.unit = sized.unit;
+  TriangleMesh& scaled = sized.mesh;
   const std::vector<TriangleSide> sides = sides_without_copies(scaled.faces);
   add_edges(scaled.vertices, sides, result);
   link_triangles(sides, scaled.faces.rows(), result);

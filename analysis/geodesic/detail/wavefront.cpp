@@ -15,6 +15,7 @@ std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 constexpr double kTie = 1e-14;
 // Narrower windows, in edge lengths, are left to their neighbours.
 constexpr double kThinnest = 1e-12;
+constexpr std::uint32_t kEventsBetweenQuestions = 1U << 14U;  // a few milliseconds
 // With more targets, looking where each lies costs more than it saves.
 constexpr std::size_t kMostTargets = 64;
 
@@ -49,8 +50,8 @@ void Wavefront::reset() {
   free_slot_ = kNone;
 }
 
-void Wavefront::run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
-                    double limit) {
+bool Wavefront::run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
+                    double limit, const std::function<bool()>& keep_going) {
   reset();
   limit_ = limit;
   horizon_ = limit;
@@ -61,7 +62,7 @@ void Wavefront::run(std::span<const std::int32_t> sources, std::span<const std::
     for (const std::int32_t source : sources) lower(source, 0.0);
     bound_targets(targets, limit);
     only_graph_ = false;
-    if (targets_.empty()) return;
+    if (targets_.empty()) return true;
     for (const std::int32_t v : touched_vertices_) {
       vertices_[at(v)].spread = kInfinity;
       push(vertices_[at(v)].distance, EventKind::vertex, v);
@@ -69,7 +70,7 @@ void Wavefront::run(std::span<const std::int32_t> sources, std::span<const std::
   } else {
     for (const std::int32_t source : sources) lower(source, 0.0);
   }
-  spread_all();
+  return spread_all(keep_going);
 }
 
 // Paths of the graph to all targets. Once there are such, only shorter ones are of interest.
@@ -92,8 +93,12 @@ void Wavefront::bound_targets(std::span<const std::int32_t> targets, double limi
   }
 }
 
-void Wavefront::spread_all() {
-  while (!events_.empty()) spread_next();
+bool Wavefront::spread_all(const std::function<bool()>& keep_going) {
+  for (std::uint32_t count = 1; !events_.empty(); ++count) {
+    if (count % kEventsBetweenQuestions == 0 && keep_going && !keep_going()) return false;
+    spread_next();
+  }
+  return true;
 }
 
 void Wavefront::spread_next() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -22,8 +23,10 @@ class Wavefront {
 
   /// Spreads from `sources` to everything within `limit`; with targets, only where shortest
   /// paths to these may run. Costs as much as what the front passes.
-  void run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
-           double limit);
+  /// @param keep_going  asked now and then; may be empty
+  /// @return  whether it came to its end
+  bool run(std::span<const std::int32_t> sources, std::span<const std::int32_t> targets,
+           double limit, const std::function<bool()>& keep_going);
 
   /// Of a vertex (with targets, of a target), after `run`; infinite beyond the limit.
   [[nodiscard]] double distance(std::int32_t vertex) const {
@@ -72,7 +75,7 @@ class Wavefront {
 
   void reset();
   void bound_targets(std::span<const std::int32_t> targets, double limit);
-  void spread_all();
+  [[nodiscard]] bool spread_all(const std::function<bool()>& keep_going);
   void spread_next();
   void handle(const Event& event);
   void push(double at, EventKind kind, std::int32_t index);

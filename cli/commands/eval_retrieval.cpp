@@ -5,7 +5,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
-#include "timbre/cli/command.h"
+#include "timbre/cli/commands/eval.h"
 #include "timbre/datasets/metrics.h"
 #include "timbre/index/gallery.h"
 #include "timbre/index/labels.h"

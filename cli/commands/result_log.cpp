@@ -1,0 +1,101 @@
+#include "timbre/cli/commands/result_log.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "timbre/analysis/core/byte_source.h"
+#include "timbre/analysis/core/error.h"
+
+namespace timbre::cli {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const char* what) {
+  throw Error(ErrorKind::io, path, what, std::generic_category().message(errno));
+}
+
+}  // namespace
+
+ResultLog::ResultLog(std::string path, const nlohmann::json& parameters, bool force)
+    : path_(std::move(path)) {
+  if (path_ == "-") {
+    throw Error(ErrorKind::bad_request, "", "output", "a log needs a file, not standard output");
+  }
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+  if (file_ < 0) refuse(path_, "open");
+  try {
+    struct stat about = {};
+    if (::fstat(file_, &about) != 0) refuse(path_, "open");
+    if (!S_ISREG(about.st_mode)) {
+      throw Error(ErrorKind::bad_request, path_, "", "is no regular file");
+    }
+    if (about.st_size == 0) {
+      write_line(parameters);
+    } else {
+      read(parameters, force);
+    }
+  } catch (...) {
+    ::close(file_);
+    throw;
+  }
+}
+
+ResultLog::~ResultLog() { ::close(file_); }
+
+// What follows the last whole line was torn off by a crash, and is cut away.
+void ResultLog::read(const nlohmann::json& parameters, bool force) {
+  const std::string text = read_bytes(path_);
+  std::size_t whole = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', whole)) {
+    const std::string_view bytes = std::string_view(text).substr(whole, end - whole);
+    const nlohmann::json line = nlohmann::json::parse(bytes, nullptr, false);
+    const bool is_first = whole == 0;
+    const bool fits = is_first ? line == parameters : line.is_object() && line.contains("key");
+    if (!fits && !force) {
+      throw Error(ErrorKind::bad_request, path_, "",
+                  is_first ? "was made with other options, or is no log; --force begins anew"
+                           : "holds a line that is no result; --force begins anew");
+    }
+    if (!fits) {
+      known_.clear();
+      whole = 0;
+      break;
+    }
+    if (!is_first) known_[line["key"].get<std::string>()] = line["result"];
+    whole = end + 1;
+  }
+  if (whole == 0 && !force && !text.empty()) {
+    throw Error(ErrorKind::bad_request, path_, "", "is no log; --force begins anew");
+  }
+  if (::ftruncate(file_, static_cast<off_t>(whole)) != 0) refuse(path_, "write");
+  if (::lseek(file_, 0, SEEK_END) < 0) refuse(path_, "write");
+  if (whole == 0) write_line(parameters);
+}
+
+void ResultLog::write_line(const nlohmann::json& line) {
+  const std::string text = line.dump() + "\n";
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t count = ::write(file_, text.data() + done, text.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse(path_, "write");
+    done += static_cast<std::size_t>(count);
+  }
+  if (::fsync(file_) != 0) refuse(path_, "write");
+}
+
+std::optional<nlohmann::json> ResultLog::find(const std::string& key) const {
+  const auto entry = known_.find(key);
+  if (entry == known_.end()) return std::nullopt;
+  return entry->second;
+}
+
+void ResultLog::append(const std::string& key, const nlohmann::json& result) {
+  write_line({{"key", key}, {"result", result}});
+}
+
+}  // namespace timbre::cli

@@ -1,0 +1,174 @@
+#include "timbre/datasets/truth.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/number_text.h"
+#include "timbre/datasets/detail/word_lines.h"
+
+namespace timbre {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string beside(const ShapeSet& set, const SetShape& shape, const char* ending) {
+  const std::string stem = shape.name.substr(0, shape.name.find_last_of('.'));
+  const std::string plain = stem.substr(0, shape.name.ends_with(".gz") ? stem.find_last_of('.')
+                                                                        : std::string::npos);
+  return (fs::path(set.truth_folder) / (plain + ending)).string();
+}
+
+bool exists(const std::string& path) {
+  std::error_code failure;
+  return fs::exists(path, failure);
+}
+
+std::int32_t vertex_from(const std::string& word, std::int32_t first, std::int64_t vertices,
+                         const std::string& path, const std::string& place) {
+  const std::optional<std::int64_t> number = parse_integer(word);
+  if (!number) throw Error(ErrorKind::bad_input, path, place, "'" + word + "' is no integer");
+  if (*number - first >= vertices) {
+    throw Error(ErrorKind::bad_input, path, place,
+                word + " is no vertex; the mesh has " + std::to_string(vertices) +
+                    (first == 0 ? ", from 0" : ", from 1"));
+  }
+  return static_cast<std::int32_t>(std::max<std::int64_t>(*number - first, -1));
+}
+
+void add_known_rows(Truth& truth, const std::vector<std::int32_t>& source,
+                    const std::vector<std::int32_t>& target) {
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    if (source[i] < 0 || target[i] < 0) continue;
+    truth.source.push_back(source[i]);
+    truth.target.push_back(target[i]);
+  }
+}
+
+void require_rows(const Truth& truth, const std::string& path) {
+  if (!truth.source.empty()) return;
+  throw Error(ErrorKind::bad_input, path, "", "tells nothing: no row is known on both sides");
+}
+
+// The column of symmetry.txt for a shape: for each point of the template its image, -1 none.
+std::vector<std::int32_t> template_symmetry(const std::string& path, const SetShape& shape,
+                                            std::size_t points) {
+  const std::vector<detail::WordLine> lines = detail::read_word_lines(path);
+  if (lines.empty()) throw Error(ErrorKind::bad_input, path, "", "is empty");
+  const std::vector<std::string>& names = lines[0].words;
+  auto column = std::find(names.begin(), names.end(), shape.label);
+  if (names.size() == 1 && names[0] == "all") column = names.begin();
+  if (column == names.end()) {
+    throw Error(ErrorKind::bad_input, path, "line 1",
+                "has no column '" + shape.label + "' for " + shape.name);
+  }
+  const auto at = static_cast<std::size_t>(column - names.begin());
+  if (lines.size() - 1 < points) {
+    throw Error(ErrorKind::bad_input, path, "",
+                "has " + std::to_string(lines.size() - 1) + " rows; the template of " +
+                    shape.name + " has " + std::to_string(points) + " points");
+  }
+  std::vector<std::int32_t> image(points);
+  for (std::size_t t = 0; t < points; ++t) {
+    const detail::WordLine& line = lines[t + 1];
+    const std::string place = "line " + std::to_string(line.number);
+    if (line.words.size() != names.size()) {
+      throw Error(ErrorKind::bad_input, path, place,
+                  "has " + std::to_string(line.words.size()) + " columns, not " +
+                      std::to_string(names.size()));
+    }
+    image[t] = vertex_from(line.words[at], 1, static_cast<std::int64_t>(points), path, place);
+  }
+  return image;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> read_vertex_list(const std::string& path, std::int32_t first,
+                                           std::int64_t vertices) {
+  std::vector<std::int32_t> list;
+  for (const detail::WordLine& line : detail::read_word_lines(path)) {
+    const std::string place = "line " + std::to_string(line.number);
+    if (line.words.size() != 1) {
+      throw Error(ErrorKind::bad_input, path, place, "one vertex is wanted");
+    }
+    list.push_back(vertex_from(line.words[0], first, vertices, path, place));
+  }
+  return list;
+}
+
+Truth map_truth(const ShapeSet& set, const SetShape& source, std::int64_t sources,
+                const SetShape& target, std::int64_t targets) {
+  const std::string from = beside(set, source, ".vts");
+  const std::string to = beside(set, target, ".vts");
+  const std::string part = beside(set, source, ".map");
+  Truth truth;
+  truth.partial = exists(part);
+  if (exists(from) && exists(to)) {
+    const std::vector<std::int32_t> p = read_vertex_list(from, 1, sources);
+    const std::vector<std::int32_t> q = read_vertex_list(to, 1, targets);
+    if (p.size() != q.size()) {
+      throw Error(ErrorKind::bad_input, to, "",
+                  "has " + std::to_string(q.size()) + " points and " + from + " has " +
+                      std::to_string(p.size()) + ": not of one template");
+    }
+    add_known_rows(truth, p, q);
+    require_rows(truth, from);
+    return truth;
+  }
+  if (!truth.partial && sources != targets) {
+    throw Error(ErrorKind::bad_input, source.file, "",
+                "nothing tells where its vertices belong on " + target.name +
+                    ": no .vts of both, no .map, and the numbers of vertices differ");
+  }
+  std::vector<std::int32_t> numbers(static_cast<std::size_t>(sources));
+  for (std::size_t v = 0; v < numbers.size(); ++v) numbers[v] = static_cast<std::int32_t>(v);
+  if (!truth.partial) return {numbers, numbers, false};
+  const std::vector<std::int32_t> image = read_vertex_list(part, 0, targets);
+  if (image.size() != numbers.size()) {
+    throw Error(ErrorKind::bad_input, part, "",
+                "has " + std::to_string(image.size()) + " lines; " + source.name + " has " +
+                    std::to_string(sources) + " vertices");
+  }
+  add_known_rows(truth, numbers, image);
+  require_rows(truth, part);
+  return truth;
+}
+
+Truth symmetry_truth(const ShapeSet& set, const SetShape& shape, std::int64_t vertices) {
+  const std::string own = beside(set, shape, ".vts");
+  if (!has_symmetry_truth(set, shape)) {
+    throw Error(ErrorKind::bad_input, shape.file, "",
+                "no symmetry is known: neither .vts with .sym.vts nor .vts with symmetry.txt");
+  }
+  const std::vector<std::int32_t> vertex = read_vertex_list(own, 1, vertices);
+  const std::string direct = beside(set, shape, ".sym.vts");
+  std::vector<std::int32_t> image;
+  if (exists(direct)) {
+    image = read_vertex_list(direct, 1, vertices);
+    if (image.size() != vertex.size()) {
+      throw Error(ErrorKind::bad_input, direct, "",
+                  "has " + std::to_string(image.size()) + " lines and " + own + " has " +
+                      std::to_string(vertex.size()));
+    }
+  } else {
+    const std::string table = (fs::path(set.folder) / "symmetry.txt").string();
+    for (const std::int32_t t : template_symmetry(table, shape, vertex.size())) {
+      image.push_back(t < 0 ? -1 : vertex[static_cast<std::size_t>(t)]);
+    }
+  }
+  Truth truth;
+  add_known_rows(truth, vertex, image);
+  require_rows(truth, own);
+  return truth;
+}
+
+bool has_symmetry_truth(const ShapeSet& set, const SetShape& shape) {
+  return exists(beside(set, shape, ".vts")) &&
+         (exists(beside(set, shape, ".sym.vts")) ||
+          exists((fs::path(set.folder) / "symmetry.txt").string()));
+}
+
+}  // namespace timbre

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 std::string beside(const ShapeSet& set, const SetShape& shape, const char* ending) {
   const std::string stem = shape.name.substr(0, shape.name.find_last_of('.'));
-  const std::string plain = stem.substr(0, shape.name.ends_with(".gz") ? stem.find_last_of('.')
-                                                                        : std::string::npos);
+  const std::string plain =
+      stem.substr(0, shape.name.ends_with(".gz") ? stem.find_last_of('.') : std::string::npos);
   return (fs::path(set.truth_folder) / (plain + ending)).string();
 }
 
@@ -67,8 +67,8 @@ std::vector<std::int32_t> template_symmetry(const std::string& path, const SetSh
   const auto at = static_cast<std::size_t>(column - names.begin());
   if (lines.size() - 1 < points) {
     throw Error(ErrorKind::bad_input, path, "",
-                "has " + std::to_string(lines.size() - 1) + " rows; the template of " +
-                    shape.name + " has " + std::to_string(points) + " points");
+                "has " + std::to_string(lines.size() - 1) + " rows; the template of " + shape.name +
+                    " has " + std::to_string(points) + " points");
   }
   std::vector<std::int32_t> image(points);
   for (std::size_t t = 0; t < points; ++t) {
@@ -163,6 +163,20 @@ Truth symmetry_truth(const ShapeSet& set, const SetShape& shape, std::int64_t ve
   add_known_rows(truth, vertex, image);
   require_rows(truth, own);
   return truth;
+}
+
+Truth mirrored(const Truth& truth, const Truth& symmetry, std::int64_t vertices) {
+  std::vector<std::int32_t> image(static_cast<std::size_t>(vertices), -1);
+  for (std::size_t i = 0; i < symmetry.source.size(); ++i) {
+    image[static_cast<std::size_t>(symmetry.source[i])] = symmetry.target[i];
+  }
+  std::vector<std::int32_t> target;
+  target.reserve(truth.target.size());
+  for (const std::int32_t v : truth.target) target.push_back(image[static_cast<std::size_t>(v)]);
+  Truth result;
+  result.partial = truth.partial;
+  add_known_rows(result, truth.source, target);
+  return result;
 }
 
 bool has_symmetry_truth(const ShapeSet& set, const SetShape& shape) {

@@ -44,6 +44,11 @@ struct Truth {
 [[nodiscard]] Truth symmetry_truth(const ShapeSet& set, const SetShape& shape,
                                    std::int64_t vertices);
 
+/// The truth of the wrong side: every target replaced by its image under the target's symmetry;
+/// rows whose image is unknown are left out.
+/// @param vertices  of the target
+[[nodiscard]] Truth mirrored(const Truth& truth, const Truth& symmetry, std::int64_t vertices);
+
 /// Whether a file says something about the symmetry of a shape.
 [[nodiscard]] bool has_symmetry_truth(const ShapeSet& set, const SetShape& shape);
 

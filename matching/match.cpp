@@ -199,16 +199,9 @@ class Matcher {
     result.solutions[0].coverage =
         0.5 * (covered_area(b_, points.ab) + covered_area(a_, points.ba));
     result.switches = find_switches(result.solutions[0].functional.ab, 20);
-    write_back(a_, b_, points.ab, result.ab);
-    write_back(b_, a_, points.ba, result.ba);
+    result.ab = between_files(a_, b_, points.ab);
+    result.ba = between_files(b_, a_, points.ba);
     judge(result);
-  }
-
-  static void write_back(const MatchSurface& from, const MatchSurface& to, const PointMap& rows,
-                         PointMap& file) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      file[static_cast<std::size_t>(from.vertex[i])] = to.vertex[static_cast<std::size_t>(rows[i])];
-    }
   }
 
   void judge(MatchResult& result) const {

@@ -272,6 +272,14 @@ FunctionalMaps zoom_out_to_vertices(const MatchSurface& A, const MatchSurface& B
   return maps;
 }
 
+PointMap between_files(const MatchSurface& from, const MatchSurface& to, const PointMap& rows) {
+  PointMap map(static_cast<std::size_t>(from.file_vertices), -1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    map[static_cast<std::size_t>(from.vertex[i])] = to.vertex[static_cast<std::size_t>(rows[i])];
+  }
+  return map;
+}
+
 DenseMaps refine_densely(const MatchSurface& A, const MatchSurface& B, FunctionalMaps maps,
                          std::span<const DenseStep> steps, int orientation, int threads) {
   DenseMaps result{std::move(maps), {}};

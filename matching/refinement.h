@@ -53,6 +53,11 @@ struct JointEmbedding {
                                                  const Eigen::Ref<const Eigen::VectorXd>& weight,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& F);
 
+/// A map between rows of two surfaces as one between the vertices of their files; -1 for
+/// vertices that a surface leaves out.
+[[nodiscard]] PointMap between_files(const MatchSurface& from, const MatchSurface& to,
+                                     const PointMap& rows);
+
 struct SampledMaps {
   FunctionalMaps functional;
   PointMaps points;  ///< between sample numbers, not vertices

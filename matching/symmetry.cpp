@@ -155,11 +155,7 @@ std::vector<Reflection> find_reflections(const MatchSurface& shape,
   double total = 0.0;
   for (Rival& rival : rivals) {
     Reflection found;
-    found.map.assign(static_cast<std::size_t>(shape.file_vertices), -1);
-    for (std::size_t i = 0; i < rival.points.size(); ++i) {
-      found.map[static_cast<std::size_t>(shape.vertex[i])] =
-          shape.vertex[static_cast<std::size_t>(rival.points[i])];
-    }
+    found.map = between_files(shape, shape, rival.points);
     found.C = std::move(rival.C);
     found.energy = rival.energy;
     found.confidence = std::exp((rivals[0].energy - rival.energy) / kEnergyScale);

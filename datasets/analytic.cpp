@@ -161,6 +161,27 @@ TriangleMesh make_torus(double major, double minor, int nu, int nv) {
   return assembled(points, faces);
 }
 
+TriangleMesh make_cylinder(double height, int nu, int nv) {
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> faces;
+  for (int v = 0; v < nv; ++v) {
+    for (int u = 0; u < nu; ++u) {
+      const double angle = kTau * (u + 0.5 * (v % 2)) / nu;
+      points.emplace_back(std::sin(angle), height * v / (nv - 1), std::cos(angle));
+    }
+  }
+  const auto at = [&](int u, int v) { return v * nu + u % nu; };
+  for (int v = 0; v + 1 < nv; ++v) {
+    for (int u = 0; u < nu; ++u) {
+      // Rows are turned by half a step by turns.
+      const bool even = v % 2 == 0;
+      faces.emplace_back(at(u, v), at(u + 1, v), at(even ? u : u + 1, v + 1));
+      faces.emplace_back(at(even ? u + 1 : u, v), at(u + 1, v + 1), at(u, v + 1));
+    }
+  }
+  return assembled(points, faces);
+}
+
 TriangleMesh make_ellipsoid(double a, double b, double c, int frequency) {
   TriangleMesh mesh = make_sphere(frequency);
   mesh.vertices *= Eigen::Vector3d(a, b, c).asDiagonal();

@@ -22,6 +22,10 @@ namespace timbre {
 /// Torus of revolution, `major` > `minor` > 0, nu x nv vertices.
 [[nodiscard]] TriangleMesh make_torus(double major, double minor, int nu, int nv);
 
+/// Open tube of radius 1 and the given height, around y, nu x nv vertices; nv at least 2.
+/// Neumann eigenvalues m^2 + (pi j / height)^2, twice where m > 0.
+[[nodiscard]] TriangleMesh make_cylinder(double height, int nu, int nv);
+
 /// Ellipsoid with the given semi-axes, from a sphere of `frequency`.
 [[nodiscard]] TriangleMesh make_ellipsoid(double a, double b, double c, int frequency);
 

@@ -36,6 +36,23 @@ std::vector<bool> ranked_relevance(std::span<const double> distances,
   return ranked;
 }
 
+std::array<double, 20> interpolated_precision(const std::vector<bool>& ranked,
+                                              std::size_t relevant) {
+  std::array<double, 20> result = {};
+  std::size_t hits = 0;
+  for (std::size_t r = 0; r < ranked.size(); ++r) {
+    if (!ranked[r]) continue;
+    ++hits;
+    const double precision = static_cast<double>(hits) / static_cast<double>(r + 1);
+    // In whole numbers: recall hits / relevant reaches level i / 20.
+    const std::size_t reached = 20 * hits / relevant;
+    for (std::size_t level = 1; level <= reached; ++level) {
+      result[level - 1] = std::max(result[level - 1], precision);
+    }
+  }
+  return result;
+}
+
 RetrievalScores score(const std::vector<bool>& ranked, std::size_t relevant) {
   const auto c = static_cast<double>(relevant);
   RetrievalScores scores;
@@ -52,6 +69,7 @@ RetrievalScores score(const std::vector<bool>& ranked, std::size_t relevant) {
     scores.dcg += gain(r);
     scores.average_precision += static_cast<double>(hits) / static_cast<double>(r + 1) / c;
   }
+  scores.precision = interpolated_precision(ranked, relevant);
   scores.nearest = ranked.front() ? 1.0 : 0.0;
   scores.dcg /= ideal;
   if (early_hits > 0) {
@@ -91,6 +109,7 @@ RetrievalScores& RetrievalScores::operator+=(const RetrievalScores& other) {
   e_measure += other.e_measure;
   dcg += other.dcg;
   average_precision += other.average_precision;
+  for (std::size_t i = 0; i < precision.size(); ++i) precision[i] += other.precision[i];
   return *this;
 }
 
@@ -101,6 +120,7 @@ RetrievalScores& RetrievalScores::operator/=(double count) {
   e_measure /= count;
   dcg /= count;
   average_precision /= count;
+  for (double& value : precision) value /= count;
   return *this;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -17,6 +18,8 @@ struct RetrievalScores {
   double e_measure = 0.0;          ///< harmonic mean of precision and recall of the first 32
   double dcg = 0.0;                ///< discounted gain 1, 1, 1/log2 3, ... over the ideal one
   double average_precision = 0.0;  ///< AP; means of it are mAP
+  /// Interpolated precision at recalls 0.05, 0.1, ..., 1: the best at that recall or beyond.
+  std::array<double, 20> precision = {};
 
   RetrievalScores& operator+=(const RetrievalScores& other);
   RetrievalScores& operator/=(double count);

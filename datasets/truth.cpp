@@ -179,6 +179,11 @@ Truth mirrored(const Truth& truth, const Truth& symmetry, std::int64_t vertices)
   return result;
 }
 
+const char* truth_form(const ShapeSet& set, const SetShape& shape) {
+  if (exists(beside(set, shape, ".vts"))) return "vts";
+  return exists(beside(set, shape, ".map")) ? "map" : "numbers";
+}
+
 bool has_symmetry_truth(const ShapeSet& set, const SetShape& shape) {
   return exists(beside(set, shape, ".vts")) &&
          (exists(beside(set, shape, ".sym.vts")) ||

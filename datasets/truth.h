@@ -49,6 +49,9 @@ struct Truth {
 /// @param vertices  of the target
 [[nodiscard]] Truth mirrored(const Truth& truth, const Truth& symmetry, std::int64_t vertices);
 
+/// How the truth of maps from a shape is given: "vts", "map" or "numbers".
+[[nodiscard]] const char* truth_form(const ShapeSet& set, const SetShape& shape);
+
 /// Whether a file says something about the symmetry of a shape.
 [[nodiscard]] bool has_symmetry_truth(const ShapeSet& set, const SetShape& shape);
 

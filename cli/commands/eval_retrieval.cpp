@@ -22,7 +22,8 @@ struct Arguments {
 nlohmann::json to_json(const RetrievalScores& scores) {
   return {{"map", scores.average_precision}, {"nn", scores.nearest},
           {"first_tier", scores.first_tier}, {"second_tier", scores.second_tier},
-          {"e_measure", scores.e_measure},   {"dcg", scores.dcg}};
+          {"e_measure", scores.e_measure},   {"dcg", scores.dcg},
+          {"precision", scores.precision}};
 }
 
 std::string to_line(const std::string& what, const RetrievalScores& scores) {
@@ -85,7 +86,7 @@ void add_eval_retrieval(CLI::App& eval, Context& context) {
   add_common_options(command, context, false);
   command.footer(
       "Leave-one-out; ties count against the ranking; shapes alone in their class are no\n"
-      "queries.\n"
+      "queries. --json also has the precision at recalls 0.05, 0.1, ..., 1.\n"
       "Example:\n  timbre eval retrieval shapes.timbre --channel dna_log --json | jq .map");
   command.callback([args, &context] { show(evaluate(*args), *args, context); });
 }

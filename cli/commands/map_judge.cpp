@@ -120,11 +120,14 @@ std::string MapJudge::map_file(const std::string& source, const std::string& tar
   return (fs::path(options_.maps) / (name + ".txt")).string();
 }
 
-// Spectra are the costly part of a pair; those of the last few shapes are kept.
+// Spectra are the costly part of a pair; those of the last few shapes are kept, the latest
+// last, so that both of a pair stay.
 const MatchSurface& MapJudge::surface(const SetShape& shape, const TriangleMesh& mesh) {
   constexpr std::size_t kKept = 16;
-  for (const auto& [name, kept] : surfaces_) {
-    if (name == shape.name) return kept;
+  for (auto entry = surfaces_.begin(); entry != surfaces_.end(); ++entry) {
+    if (entry->first != shape.name) continue;
+    surfaces_.splice(surfaces_.end(), surfaces_, entry);
+    return surfaces_.back().second;
   }
   if (surfaces_.size() == kKept) surfaces_.pop_front();
   MatchSurface made = for_file(shape.file, [&] {

@@ -139,8 +139,7 @@ Values eigenfunction_of(const Arguments& args, const Context& context, const Tri
           "eigenfunction " + std::to_string(args.eigenfunction), true, 0.0};
 }
 
-// Without --column a time, or an energy, a third of the way: limbs and features show, single
-// tips do not yet rule.
+// Without --column a time a third of the way, where limbs show, or an energy in the middle.
 Values signature_of(const Arguments& args, const Context& context, const TriangleMesh& mesh) {
   const Operator op = compute_operator(mesh, args.op);
   const int zeros = static_cast<int>(op.component_area.size());
@@ -152,7 +151,7 @@ Values signature_of(const Arguments& args, const Context& context, const Triangl
       args.signature == "hks"
           ? compute_heat_kernel_signature(spectrum, heat_kernel_times(spectrum))
           : compute_wave_kernel_signature(spectrum, wave_kernel_bands(spectrum));
-  const int otherwise = static_cast<int>(table.cols()) / 3;
+  const int otherwise = static_cast<int>(table.cols()) / (args.signature == "hks" ? 3 : 2);
   return {column_of(table, args.column, otherwise),
           args.signature + " column " + std::to_string(args.column < 0 ? otherwise : args.column),
           false, 1.0};

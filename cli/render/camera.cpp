@@ -1,7 +1,7 @@
 #include "timbre/cli/render/camera.h"
 
-#include <algorithm>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,8 +9,8 @@
 namespace timbre::cli {
 namespace {
 
-// Half the shorter side at unit distance: 27 degrees across, near to a portrait lens.
-constexpr double kHalfField = 0.24;
+// Half the shorter side at unit distance: 23 degrees across, near to a portrait lens.
+constexpr double kHalfField = 0.2;
 // The share of the picture's width or height that the object may fill.
 constexpr double kFilled = 0.94;
 

@@ -19,7 +19,7 @@ Colour diverging_at(double t) {
 
 // From violet over blue and green to yellow, the way light hues and dark hues lie.
 Colour sequential_at(double t) {
-  return colour_of(22.0 + 70.0 * t, 0.125 + 0.02 * t, 292.0 - 187.0 * t);
+  return colour_of(35.0 + 57.0 * t, 0.125 + 0.02 * t, 292.0 - 187.0 * t);
 }
 
 struct Hue {

@@ -26,7 +26,7 @@ constexpr int kEyeRays = 9;
 // Rays into the surroundings, for each ray of the eye.
 constexpr int kSkyRays = 6;
 // What is farther away than this does not darken. The mesh is 2 long.
-constexpr float kReach = 0.7F;
+constexpr float kReach = 0.9F;
 // Rays start this far off the surface. Less than a pixel; more than rounding.
 constexpr float kLift = 1e-3F;
 constexpr float kMarkerRadius = 0.028F;
@@ -193,7 +193,7 @@ std::uint8_t to_byte(float share) {
 void develop(const Pixel& pixel, float openness, const std::optional<Colour>& background,
              std::uint8_t* rgba) {
   // Lamps are large: folds lose some of their light too.
-  constexpr float kLampShare = 0.45F;
+  constexpr float kLampShare = 0.5F;
   const float lamps = 1.0F - kLampShare * (1.0F - openness);
   const auto hits = static_cast<float>(std::max(1, pixel.hits));
   const float cover = static_cast<float>(pixel.hits) / kEyeRays;

@@ -10,7 +10,7 @@ namespace timbre::cli {
 namespace {
 
 // sRGB.
-const Colour kClay(0.84F, 0.81F, 0.77F);
+const Colour kClay(0.89F, 0.855F, 0.81F);
 const Colour kNoColour(0.66F, 0.66F, 0.67F);
 const Colour kInside(0.52F, 0.58F, 0.68F);
 const Colour kLine(0.09F, 0.09F, 0.11F);
@@ -165,10 +165,10 @@ Studio::Studio(const Camera& camera) {
 }
 
 Light Studio::light_at(const SurfacePoint& point, const Eigen::Vector3f& to_eye) const {
-  static const Colour kKey(0.60F, 0.585F, 0.56F);
-  static const Colour kFill(0.10F, 0.11F, 0.125F);
-  static const Colour kSky(0.40F, 0.41F, 0.43F);
-  static const Colour kGround(0.20F, 0.19F, 0.18F);
+  static const Colour kKey(0.74F, 0.72F, 0.68F);
+  static const Colour kFill(0.11F, 0.12F, 0.14F);
+  static const Colour kSky(0.38F, 0.39F, 0.41F);
+  static const Colour kGround(0.15F, 0.145F, 0.14F);
   const Eigen::Vector3f& n = point.normal;
   // Large lamps: their light ends softly, a little behind the edge of the lit half.
   constexpr float kWrap = 0.25F;

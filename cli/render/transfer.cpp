@@ -51,8 +51,8 @@ const BoxColours& box_colours() {
     BoxColours box;
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t end = 0; end < 2; ++end) {
-        box[side][end][0] = colour_of(40.0, 0.19, kHues[side][end]);
-        box[side][end][1] = colour_of(83.0, 0.15, kHues[side][end]);
+        box[side][end][0] = colour_of(52.0, 0.2, kHues[side][end]);
+        box[side][end][1] = colour_of(85.0, 0.15, kHues[side][end]);
       }
     }
     return box;
@@ -123,7 +123,9 @@ VertexColours position_colours(const TriangleMesh& mesh, UpAxis up) {
       mesh.vertices / std::exp2(std::ilogb(largest)) * rotation_to_y_up(up).transpose();
   const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
   const int longer = extent(0) >= extent(2) ? 0 : 2;
-  const Eigen::VectorXf side = spread(points.col(2 - longer));
+  // Steepest in the middle: between blue and orange lies grey, which says little.
+  const Eigen::VectorXf side =
+      spread(points.col(2 - longer)).unaryExpr([](float t) { return t * t * (3.0F - 2.0F * t); });
   const Eigen::VectorXf end = spread(points.col(longer));
   const Eigen::VectorXf top = spread(points.col(1));
   VertexColours colours = VertexColours::Zero(points.rows(), 3);

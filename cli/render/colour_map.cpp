@@ -26,10 +26,11 @@ struct Hue {
   double lightness, chroma, hue;
 };
 
-// Neighbours differ in lightness as well as in hue.
+// Chosen so that the least difference of any two, also as seen without red or without green
+// cones, is as large as it gets near these hues.
 constexpr std::array kCategories = {
-    Hue{45.0, 0.15, 256.0}, Hue{76.0, 0.15, 68.0},  Hue{52.0, 0.13, 160.0}, Hue{84.0, 0.14, 100.0},
-    Hue{40.0, 0.16, 322.0}, Hue{80.0, 0.09, 225.0}, Hue{54.0, 0.18, 38.0},  Hue{76.0, 0.10, 345.0},
+    Hue{49.0, 0.15, 257.0}, Hue{71.0, 0.15, 69.0},  Hue{56.0, 0.15, 174.0}, Hue{85.0, 0.15, 100.0},
+    Hue{38.0, 0.15, 329.0}, Hue{66.0, 0.15, 236.0}, Hue{54.0, 0.15, 40.0},  Hue{83.0, 0.15, 347.0},
 };
 
 struct Range {

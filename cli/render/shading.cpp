@@ -9,6 +9,8 @@
 namespace timbre::cli {
 namespace {
 
+using Eigen::Vector3f;
+
 // sRGB.
 const Colour kClay(0.89F, 0.855F, 0.81F);
 const Colour kNoColour(0.66F, 0.66F, 0.67F);
@@ -44,8 +46,8 @@ double nearest_level(const std::vector<double>& levels, double value) {
 struct SurfaceShader::Corners {
   std::array<std::int32_t, 3> vertices{};
   std::array<float, 3> weights{};
-  std::array<Eigen::Vector3f, 3> points;
-  Eigen::Vector3f face_normal;
+  std::array<Vector3f, 3> points;
+  Vector3f face_normal;
 
   [[nodiscard]] double mix(const Eigen::VectorXd& values) const {
     double sum = 0.0;
@@ -92,24 +94,22 @@ float SurfaceShader::line_cover_at(const Corners& corners, const ViewRay& ray, f
   const Eigen::VectorXd& values = look_.lines->values;
   const double value = corners.mix(values);
   const double off = std::abs(value - nearest_level(look_.lines->levels, value));
-  const Eigen::Vector3f& n = corners.face_normal;
+  const Vector3f& n = corners.face_normal;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (std::size_t c = 0; c < 3; ++c) {
-    const Eigen::Vector3f opposite = corners.points[(c + 2) % 3] - corners.points[(c + 1) % 3];
+    const Vector3f opposite = corners.points[(c + 2) % 3] - corners.points[(c + 1) % 3];
     gradient += values(corners.vertices[c]) * n.cross(opposite).cast<double>();
   }
-  const Eigen::Vector3f a = corners.points[1] - corners.points[0];
-  const Eigen::Vector3f b = corners.points[2] - corners.points[0];
+  const Vector3f a = corners.points[1] - corners.points[0];
+  const Vector3f b = corners.points[2] - corners.points[0];
   gradient /= double{a.cross(b).dot(n)};
-  double steepness = 0.0;
-  for (const Eigen::Vector3f& step : {ray.step_right, ray.step_down}) {
-    const Eigen::Vector3f moved =
-        depth * (step - ray.direction * (n.dot(step) / n.dot(ray.direction)));
-    const double change = gradient.dot(moved.cast<double>());
-    steepness += change * change;
-  }
+  const auto change = [&](const Vector3f& step) {
+    const Vector3f moved = depth * (step - ray.direction * (n.dot(step) / n.dot(ray.direction)));
+    return gradient.dot(moved.cast<double>());
+  };
+  const double steepness = std::hypot(change(ray.step_right), change(ray.step_down));
   if (!(steepness > 0.0)) return 0.0F;
-  const double pixels = off / std::sqrt(steepness);
+  const double pixels = off / steepness;
   return static_cast<float>(std::clamp(kHalfLine + 0.5 - pixels, 0.0, 1.0));
 }
 
@@ -157,27 +157,27 @@ SurfacePoint SurfaceShader::point_at(const RayHit& hit, const ViewRay& ray) cons
 
 Studio::Studio(const Camera& camera) {
   const auto towards = [&](double right, double up, double back) {
-    return Eigen::Vector3f(
+    return Vector3f(
         (right * camera.right + up * camera.up - back * camera.forward).normalized().cast<float>());
   };
   key_ = towards(-0.55, 0.75, 0.75);
   fill_ = towards(0.85, 0.05, 0.5);
 }
 
-Light Studio::light_at(const SurfacePoint& point, const Eigen::Vector3f& to_eye) const {
+Light Studio::light_at(const SurfacePoint& point, const Vector3f& to_eye) const {
   static const Colour kKey(0.74F, 0.72F, 0.68F);
   static const Colour kFill(0.11F, 0.12F, 0.14F);
   static const Colour kSky(0.38F, 0.39F, 0.41F);
   static const Colour kGround(0.15F, 0.145F, 0.14F);
-  const Eigen::Vector3f& n = point.normal;
+  const Vector3f& n = point.normal;
   // Large lamps: their light ends softly, a little behind the edge of the lit half.
   constexpr float kWrap = 0.25F;
-  const auto lamp = [&](const Eigen::Vector3f& towards) {
+  const auto lamp = [&](const Vector3f& towards) {
     const float facing = std::max(0.0F, (n.dot(towards) + kWrap) / (1.0F + kWrap));
     return facing * std::sqrt(facing);
   };
   const float upward = 0.5F + 0.5F * n.y();
-  const Eigen::Vector3f half = (key_ + to_eye).normalized();
+  const Vector3f half = (key_ + to_eye).normalized();
   const float gloss = 0.045F * std::pow(std::max(0.0F, n.dot(half)), 24.0F);
   Light light;
   light.direct =

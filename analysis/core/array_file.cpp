@@ -144,7 +144,7 @@ NpyHeader take_npy_header(std::string_view& bytes) {
   if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
     throw npy_error("", "is not a NumPy array");
   }
-  const int version = bytes[6];
+  const int version = static_cast<unsigned char>(bytes[6]);
   if (version != 1 && version != 2) {
     throw npy_error("header", "has format " + std::to_string(version) + "; 1 and 2 are read");
   }

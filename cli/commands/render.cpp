@@ -4,17 +4,15 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
-#include "timbre/analysis/signatures/heat_kernel.h"
-#include "timbre/analysis/signatures/wave_kernel.h"
 #include "timbre/cli/array_input.h"
 #include "timbre/cli/command.h"
+#include "timbre/cli/commands/render_values.h"
 #include "timbre/cli/options.h"
 #include "timbre/cli/render/transfer.h"
 
@@ -30,16 +28,9 @@ struct Arguments {
   std::string background = "transparent";
   RenderOptions options;
 
-  std::string values, signature, map, onto;
-  int eigenfunction = 0;
-  bool eigenfunction_given = false;
-  int column = -1;  ///< -1: not given
-  int count = 100;
-  std::string colours = "auto";
-  double clip = -1.0;  ///< percent; -1: not given
-  int lines = -1;      ///< -1: not given
+  RenderValues values;
+  std::string map, onto;
   std::vector<std::int32_t> markers;
-  OperatorOptions op;
 };
 
 constexpr int kLargestSide = 4096;
@@ -100,129 +91,17 @@ void require_picture_name(const std::string& path) {
   throw Error(ErrorKind::bad_request, path, "output", "must end in .png; pictures are PNG files");
 }
 
-// Numbers for the vertices, and what is known about them.
-struct Values {
-  Eigen::VectorXd numbers;
-  std::string about;  ///< "eigenfunction 3"
-  bool is_signed = false;
-  double clip = 0.0;  ///< percent
-};
-
-Eigen::VectorXd column_of(const Eigen::MatrixXd& table, int column, int otherwise) {
-  if (column < 0) column = otherwise;
-  if (column < table.cols()) return table.col(column);
-  throw bad_option("column", std::to_string(column) + " is none of the " +
-                                 std::to_string(table.cols()) + ", from 0");
-}
-
-Values values_of_file(const Arguments& args, const Context& context, const TriangleMesh& mesh) {
-  const Eigen::MatrixXd table = read_table(context, args.values);
-  return for_file(args.values, [&]() -> Values {
-    if (table.rows() != mesh.vertices.rows()) {
-      throw Error(ErrorKind::bad_input, "", "",
-                  "has " + std::to_string(table.rows()) + " rows, but the mesh has " +
-                      std::to_string(mesh.vertices.rows()) + " vertices");
-    }
-    return {column_of(table, args.column, 0), "values", false, 0.0};
-  });
-}
-
-Values eigenfunction_of(const Arguments& args, const Context& context, const TriangleMesh& mesh) {
-  const Operator op = compute_operator(mesh, args.op);
-  const Spectrum spectrum = compute_spectrum(
-      op, {.count = args.eigenfunction + 1, .certify = false, .progress = context.progress()});
-  if (args.eigenfunction >= spectrum.vectors.cols()) {
-    throw bad_option("eigenfunction",
-                     "the mesh has only " + std::to_string(spectrum.vectors.cols()) + ", from 0");
-  }
-  return {spectrum.vectors.col(args.eigenfunction),
-          "eigenfunction " + std::to_string(args.eigenfunction), true, 0.0};
-}
-
-// Without --column a time a third of the way, where limbs show, or an energy in the middle.
-Values signature_of(const Arguments& args, const Context& context, const TriangleMesh& mesh) {
-  const Operator op = compute_operator(mesh, args.op);
-  const int zeros = static_cast<int>(op.component_area.size());
-  const Spectrum spectrum = at_unit_area(
-      compute_spectrum(
-          op, {.count = args.count + zeros, .certify = false, .progress = context.progress()}),
-      op.area);
-  const Eigen::MatrixXd table =
-      args.signature == "hks"
-          ? compute_heat_kernel_signature(spectrum, heat_kernel_times(spectrum))
-          : compute_wave_kernel_signature(spectrum, wave_kernel_bands(spectrum));
-  const int otherwise = static_cast<int>(table.cols()) / (args.signature == "hks" ? 3 : 2);
-  return {column_of(table, args.column, otherwise),
-          args.signature + " column " + std::to_string(args.column < 0 ? otherwise : args.column),
-          false, 1.0};
-}
-
-std::optional<Values> chosen_values(const Arguments& args, const Context& context,
-                                    const TriangleMesh& mesh) {
-  if (!args.values.empty()) return values_of_file(args, context, mesh);
-  if (args.eigenfunction_given) return eigenfunction_of(args, context, mesh);
-  if (!args.signature.empty()) return signature_of(args, context, mesh);
-  return std::nullopt;
-}
-
-ColourMapKind colour_map_for(const Arguments& args, const Values& values) {
-  if (args.colours == "diverging") return ColourMapKind::diverging;
-  if (args.colours == "sequential") return ColourMapKind::sequential;
-  if (args.colours == "categorical") return ColourMapKind::categorical;
-  return values.is_signed ? ColourMapKind::diverging : suggest_colour_map(values.numbers);
-}
-
-const char* to_word(ColourMapKind kind) {
-  switch (kind) {
-    case ColourMapKind::diverging:
-      return "diverging";
-    case ColourMapKind::sequential:
-      return "sequential";
-    case ColourMapKind::categorical:
-      break;
-  }
-  return "categorical";
-}
-
-// Levels part the range into equal steps: one lies in the middle, at 0 where the range is
-// symmetric.
-std::vector<double> levels_between(double low, double high, int count) {
-  std::vector<double> levels;
-  for (int i = 1; i <= count; ++i) {
-    const double share = static_cast<double>(i) / (count + 1);
-    levels.push_back((1.0 - share) * low + share * high);
-  }
-  return levels;
-}
-
-// Puts values on the surface, and says how.
-nlohmann::json show_values(const Arguments& args, Values values, SurfaceLook& look) {
-  const ColourMapKind kind = colour_map_for(args, values);
-  ColourScale scale =
-      scale_to_table(values.numbers, kind, args.clip < 0.0 ? values.clip : args.clip);
-  look.field = ColourField{std::move(scale.places), make_colour_table(kind),
-                           kind == ColourMapKind::categorical};
-  const int lines = args.lines >= 0 ? args.lines : (kind == ColourMapKind::diverging ? 1 : 0);
-  if (lines > 0 && kind != ColourMapKind::categorical && scale.low < scale.high) {
-    look.lines = Isolines{std::move(values.numbers), levels_between(scale.low, scale.high, lines)};
-  }
-  return {{"about", values.about},
-          {"colours", to_word(kind)},
-          {"low", scale.low},
-          {"high", scale.high}};
-}
-
 void add_markers(const std::vector<std::int32_t>& vertices, SurfaceLook& look) {
   const ColourTable colours = make_colour_table(ColourMapKind::categorical);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (vertices[i] >= 0) look.markers.push_back({vertices[i], colours[(i + 1) % colours.size()]});
+    if (vertices[i] >= 0) look.markers.push_back({vertices[i], colours[i % colours.size()]});
   }
 }
 
 struct Drawing {
   std::vector<Image> images;
   int columns = 1;
-  nlohmann::json values;  ///< null without
+  std::optional<ShownValues> values;
 };
 
 Drawing draw_one(const Arguments& args, const Context& context, const std::vector<View>& views) {
@@ -230,9 +109,7 @@ Drawing draw_one(const Arguments& args, const Context& context, const std::vecto
   SurfaceLook look{.mesh = mesh};
   Drawing drawing;
   for_file(args.mesh, [&] {
-    if (std::optional<Values> values = chosen_values(args, context, mesh)) {
-      drawing.values = show_values(args, std::move(*values), look);
-    }
+    drawing.values = show_values(args.values, context, look);
     add_markers(args.markers, look);
     drawing.images = render(look, views, args.options);
   });
@@ -274,6 +151,13 @@ std::vector<View> chosen_views(const Arguments& args) {
   return views;
 }
 
+nlohmann::json to_json(const ShownValues& values) {
+  return {{"about", values.about},
+          {"colours", to_word(values.colours)},
+          {"low", values.low},
+          {"high", values.high}};
+}
+
 void run(Arguments& args, const Context& context) {
   set_size(args.size, args.options);
   args.options.background = parse_background(args.background);
@@ -295,7 +179,7 @@ void run(Arguments& args, const Context& context) {
                   {"width", picture.width},
                   {"height", picture.height},
                   {"views", seen},
-                  {"values", drawing.values}},
+                  {"values", drawing.values ? to_json(*drawing.values) : nlohmann::json()}},
                  context.output == "-" ? "" : "wrote " + escape_control(context.output) + "\n");
 }
 
@@ -326,49 +210,15 @@ void add_camera_options(CLI::App& command, Arguments& args) {
       ->capture_default_str();
 }
 
-void add_colour_options(CLI::App& command, Arguments& args) {
-  CLI::Option* const values = command.add_option(
-      "--values", args.values, "numbers for the vertices: .npy, or text, a row for each vertex");
-  CLI::Option* const eigenfunction =
-      command
-          .add_option("--eigenfunction", args.eigenfunction,
-                      "show this eigenfunction; 0 is the constant one")
-          ->check(CLI::Range(0, 100000));
-  CLI::Option* const signature =
-      command.add_option("--signature", args.signature, "show a signature: hks or wks")
-          ->check(CLI::IsMember({"hks", "wks"}));
+void add_map_options(CLI::App& command, Arguments& args) {
   CLI::Option* const map = command.add_option(
       "--map", args.map, "show a map to --onto: for each vertex a vertex there, -1 for none");
   CLI::Option* const onto = command.add_option("--onto", args.onto, "mesh that --map leads to");
   map->needs(onto);
   onto->needs(map);
-  values->excludes(eigenfunction)->excludes(signature)->excludes(map);
-  eigenfunction->excludes(signature)->excludes(map);
-  signature->excludes(map);
-  command
-      .add_option("--column", args.column,
-                  "of --values (default 0), or the time or energy of --signature")
-      ->check(CLI::Range(0, 1000000));
-  command.add_option("-k,--count", args.count, "eigenvalues that --signature uses")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command
-      .add_option("--colours", args.colours,
-                  "auto, diverging (signed, 0 in the middle), sequential or categorical")
-      ->check(CLI::IsMember({"auto", "diverging", "sequential", "categorical"}))
-      ->capture_default_str();
-  command
-      .add_option("--clip", args.clip,
-                  "percent of the values at each end that share the end's colour; default: 1 for "
-                  "--signature, else 0")
-      ->check(number_between(0.0, 49.0));
-  command
-      .add_option("--lines", args.lines,
-                  "draw so many lines of equal value; default: 1, at 0, for diverging colours")
-      ->check(CLI::Range(0, 1000));
-  command.add_option("--markers", args.markers, "vertices to mark with balls, comma-separated")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 2147483647));
+  for (const char* other : {"--values", "--eigenfunction", "--signature"}) {
+    map->excludes(command.get_option(other));
+  }
 }
 
 }  // namespace
@@ -378,8 +228,11 @@ void add_render(CLI::App& timbre, Context& context) {
   CLI::App& command = *timbre.add_subcommand("render", "Pictures of surfaces, without a display");
   command.add_option("MESH", args->mesh, "mesh file, or - for standard input")->required();
   add_camera_options(command, *args);
-  add_colour_options(command, *args);
-  add_operator_options(command, args->op);
+  add_value_options(command, args->values);
+  add_map_options(command, *args);
+  command.add_option("--markers", args->markers, "vertices to mark with balls, comma-separated")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 2147483647));
   add_read_options(command, context);
   add_threads_option(command, context);
   add_common_options(command, context, true);
@@ -390,7 +243,6 @@ void add_render(CLI::App& timbre, Context& context) {
       "finer targets) where none does, grey beyond. Text from 'timbre match -o MAP.txt' fits.\n"
       "Example:\n  timbre render horse.ply -o horse.png --eigenfunction 5 --view front,left");
   command.callback([args, &command, &context] {
-    args->eigenfunction_given = command.count("--eigenfunction") > 0;
     args->free = command.count("--azimuth") + command.count("--elevation") > 0;
     run(*args, context);
   });

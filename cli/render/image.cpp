@@ -24,24 +24,18 @@ std::string to_png(const Image& image) {
 }
 
 Image tile(const std::vector<Image>& images, int columns) {
-  const int count = static_cast<int>(images.size());
-  columns = std::min(columns, count);
-  const int rows = (count + columns - 1) / columns;
-  const int width = images.front().width;
-  const int height = images.front().height;
-  Image all{columns * width, rows * height, {}};
-  const auto stride = static_cast<std::size_t>(width) * 4;
-  all.rgba.resize(stride * static_cast<std::size_t>(columns) *
-                  static_cast<std::size_t>(all.height));
-  for (int i = 0; i < count; ++i) {
-    for (int y = 0; y < height; ++y) {
-      const auto row = static_cast<std::size_t>(i / columns * height + y);
-      const std::size_t to =
-          (row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i % columns)) *
-          stride;
-      const auto from = images[static_cast<std::size_t>(i)].rgba.begin() +
-                        static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * stride);
-      std::copy_n(from, stride, all.rgba.begin() + static_cast<std::ptrdiff_t>(to));
+  const std::size_t count = images.size();
+  const std::size_t across = std::min(static_cast<std::size_t>(columns), count);
+  const std::size_t rows = (count + across - 1) / across;
+  const auto height = static_cast<std::size_t>(images.front().height);
+  const std::size_t stride = static_cast<std::size_t>(images.front().width) * 4;
+  Image all{static_cast<int>(across) * images.front().width, static_cast<int>(rows * height), {}};
+  all.rgba.resize(stride * across * height * rows);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t y = 0; y < height; ++y) {
+      const std::size_t row = i / across * height + y;
+      std::copy_n(&images[i].rgba[y * stride], stride,
+                  &all.rgba[(row * across + i % across) * stride]);
     }
   }
   return all;

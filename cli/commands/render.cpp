@@ -25,6 +25,7 @@ struct Arguments {
   std::vector<std::string> views = {"three-quarter"};
   View free_view;
   bool free = false;  ///< --azimuth or --elevation instead of --view
+  std::string up = "y";
   std::string background = "transparent";
   RenderOptions options;
 
@@ -160,6 +161,7 @@ nlohmann::json to_json(const ShownValues& values) {
 
 void run(Arguments& args, const Context& context) {
   set_size(args.size, args.options);
+  args.options.up = up_axes().at(args.up);
   args.options.background = parse_background(args.background);
   args.options.threads = context.threads;
   args.options.progress = context.progress();
@@ -203,9 +205,9 @@ void add_camera_options(CLI::App& command, Arguments& args) {
                   "degrees above the horizon, instead of --view")
       ->check(number_between(-90.0, 90.0))
       ->excludes(view);
-  command.add_option("--up", args.options.up, "axis that points up: x, y, z, -x, -y or -z")
-      ->transform(CLI::CheckedTransformer(up_axes()))
-      ->default_str("y");
+  command.add_option("--up", args.up, "axis that points up: x, y, z, -x, -y or -z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->capture_default_str();
   command.add_option("--background", args.background, "transparent, white, black or #rrggbb")
       ->capture_default_str();
 }

@@ -60,6 +60,88 @@ Faces with_area(const Points& points, const Faces& faces) {
   return kept;
 }
 
+// The same triangles between the first vertices at each position: files often have a vertex
+// for each triangle or patch, and seams should not show.
+Faces welded(const Points& points, const Faces& faces) {
+  const auto n = static_cast<std::size_t>(points.rows());
+  std::vector<std::int32_t> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  const auto place = [&](std::int32_t v) {
+    return std::array{points(v, 0), points(v, 1), points(v, 2)};
+  };
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return place(a) != place(b) ? place(a) < place(b) : a < b;
+  });
+  std::vector<std::int32_t> first(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool same = i > 0 && place(order[i]) == place(order[i - 1]);
+    first[static_cast<std::size_t>(order[i])] =
+        same ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
+  }
+  return faces.unaryExpr([&](std::int32_t v) { return first[static_cast<std::size_t>(v)]; });
+}
+
+// Keeps the first of triangles with the same corners. Returns which of those that are kept
+// stand for several: rounding would decide which of them the eye sees.
+std::vector<bool> drop_repeated(Faces& faces, Faces& joined) {
+  const auto count = static_cast<std::size_t>(faces.rows());
+  using Key = std::array<std::int32_t, 4>;  // sorted corners, number
+  std::vector<Key> keys(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto f = static_cast<Index>(i);
+    keys[i] = {joined(f, 0), joined(f, 1), joined(f, 2), static_cast<std::int32_t>(i)};
+    std::sort(keys[i].begin(), keys[i].begin() + 3);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> dropped(count);
+  std::vector<bool> repeated(count);
+  for (std::size_t i = 1, first = 0; i < count; ++i) {
+    if (!std::equal(keys[i].begin(), keys[i].begin() + 3, keys[first].begin())) {
+      first = i;
+      continue;
+    }
+    dropped[static_cast<std::size_t>(keys[i][3])] = true;
+    repeated[static_cast<std::size_t>(keys[first][3])] = true;
+  }
+  Index kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (dropped[i]) continue;
+    faces.row(kept) = faces.row(static_cast<Index>(i));
+    joined.row(kept) = joined.row(static_cast<Index>(i));
+    repeated[static_cast<std::size_t>(kept++)] = repeated[i];
+  }
+  faces.conservativeResize(kept, 3);
+  joined.conservativeResize(kept, 3);
+  repeated.resize(static_cast<std::size_t>(kept));
+  return repeated;
+}
+
+// Six times the volume under the triangles, as seen from the middle of their corners.
+double signed_volume(const Points& points, const Faces& faces) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const std::int32_t v : faces.reshaped()) middle += points.row(v).transpose();
+  middle /= static_cast<double>(faces.size());
+  double sum = 0.0;
+  for (Index f = 0; f < faces.rows(); ++f) {
+    sum += area_vector(points, faces, f).dot(points.row(faces(f, 0)).transpose() - middle);
+  }
+  return sum;
+}
+
+// Turns triangles outward, or, where the surface is too open to tell, so that it is rather
+// full than hollow. Returns whether neighbours agree.
+bool turn_outward(const Points& points, Faces& faces, Faces& joined) {
+  const OrientedFaces oriented = orient_outward({points, joined});
+  for (Index f = 0; f < faces.rows(); ++f) {
+    if (oriented.faces.row(f) != joined.row(f)) std::swap(faces(f, 1), faces(f, 2));
+  }
+  if (oriented.orientation == Orientation::consistent && signed_volume(points, faces) < -1e-3) {
+    faces.col(1).swap(faces.col(2));
+  }
+  joined = welded(points, faces);
+  return oriented.orientation != Orientation::none;
+}
+
 // Corners that share a normal, as a forest whose roots stand for the groups.
 class CornerGroups {
  public:
@@ -90,10 +172,10 @@ std::int64_t corner_at(const Faces& faces, std::int32_t face, std::int32_t verte
   return 3 * std::int64_t{face} + c;
 }
 
-CornerGroups join_across_smooth_edges(const RenderMesh& mesh) {
+CornerGroups join_across_smooth_edges(const RenderMesh& mesh, const Faces& joined) {
   constexpr float kCosCrease = 0.643F;  // 50 degrees
   CornerGroups groups(3 * mesh.faces.rows());
-  const std::vector<TriangleSide> sides = sorted_sides(mesh.faces);
+  const std::vector<TriangleSide> sides = sorted_sides(joined);
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     end = end_of_edge(sides, i);
     if (end - i != 2 || sides[i].forward == sides[i + 1].forward) continue;
@@ -101,7 +183,7 @@ CornerGroups join_across_smooth_edges(const RenderMesh& mesh) {
     const std::int32_t g = sides[i + 1].face;
     if (mesh.face_normals.row(f).dot(mesh.face_normals.row(g)) < kCosCrease) continue;
     for (const std::int32_t v : {sides[i].low, sides[i].high}) {
-      groups.join(corner_at(mesh.faces, f, v), corner_at(mesh.faces, g, v));
+      groups.join(corner_at(joined, f, v), corner_at(joined, g, v));
     }
   }
   return groups;
@@ -114,13 +196,13 @@ double angle_at(const RenderMesh& mesh, Index f, int c) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-void find_normals(RenderMesh& mesh) {
+void find_normals(RenderMesh& mesh, const Faces& joined) {
   const Index count = mesh.faces.rows();
   mesh.face_normals.resize(count, 3);
   for (Index f = 0; f < count; ++f) {
     mesh.face_normals.row(f) = area_vector(mesh.points, mesh.faces, f).normalized().cast<float>();
   }
-  CornerGroups groups = join_across_smooth_edges(mesh);
+  CornerGroups groups = join_across_smooth_edges(mesh, joined);
   // Angles, not areas: the normal then does not depend on how a flat part is cut.
   std::vector<Eigen::Vector3d> sums(3 * static_cast<std::size_t>(count), Eigen::Vector3d::Zero());
   for (Index f = 0; f < count; ++f) {
@@ -145,15 +227,16 @@ void find_normals(RenderMesh& mesh) {
 
 RenderMesh make_render_mesh(const TriangleMesh& mesh, UpAxis up) {
   if (mesh.faces.rows() == 0) throw nothing_to_draw();
-  TriangleMesh unit{to_unit_cube(mesh), {}};
-  unit.faces = with_area(unit.vertices, mesh.faces);
-  if (unit.faces.rows() == 0) throw nothing_to_draw();
-  OrientedFaces oriented = orient_outward(unit);
+  const Points unit = to_unit_cube(mesh);
   RenderMesh drawn;
-  drawn.points = unit.vertices * rotation_to_y_up(up).transpose();
-  drawn.faces = std::move(oriented.faces);
-  drawn.has_outside = oriented.orientation != Orientation::none;
-  find_normals(drawn);
+  drawn.faces = with_area(unit, mesh.faces);
+  if (drawn.faces.rows() == 0) throw nothing_to_draw();
+  Faces joined = welded(unit, drawn.faces);
+  drawn.has_back = drop_repeated(drawn.faces, joined);
+  drawn.has_back.flip();
+  if (!turn_outward(unit, drawn.faces, joined)) drawn.has_back.assign(drawn.has_back.size(), false);
+  drawn.points = unit * rotation_to_y_up(up).transpose();
+  find_normals(drawn, joined);
   return drawn;
 }
 

@@ -12,8 +12,10 @@ namespace timbre::cli {
 /// A mesh made ready to be drawn.
 struct RenderMesh {
   Points points;  ///< n x 3, y up; those in triangles lie in [-1, 1]^3
-  Faces faces;    ///< the triangles that have an area, turned outward where there is an outside
-  bool has_outside = false;
+  Faces faces;    ///< the triangles that have an area, each once, turned outward
+  /// Of each face, whether its two sides are told apart: not on one-sided surfaces, nor where
+  /// the mesh has the triangle more than once.
+  std::vector<bool> has_back;
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> face_normals;
   /// Of each corner of each face. Faces that meet at less than 50 degrees share normals;
   /// sharper edges stay sharp.

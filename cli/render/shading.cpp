@@ -133,7 +133,7 @@ SurfacePoint SurfaceShader::face_point(const RayHit& hit, const ViewRay& ray) co
   if (corners.face_normal.dot(ray.direction) > 0.0F) {
     point.face_normal = -point.face_normal;
     point.normal = -point.normal;
-    if (mesh_.has_outside) {
+    if (mesh_.has_back[static_cast<std::size_t>(hit.face)]) {
       point.albedo = 0.45F * point.albedo + 0.55F * point.albedo.cwiseProduct(to_linear(kInside));
     }
   }

@@ -38,7 +38,7 @@ TEST(ColourSpace, GoesThereAndBack) {
 }
 
 TEST(ColourSpace, KeepsLightnessWhereTheScreenLacksChroma) {
-  for (double hue = 0.0; hue < 360.0; hue += 30.0) {
+  for (int hue = 0; hue < 360; hue += 30) {
     for (const double lightness : {5.0, 30.0, 60.0, 90.0}) {
       const Colour colour = colour_of(lightness, 0.4, hue);
       EXPECT_NEAR(lightness_of(colour), lightness, 0.1);

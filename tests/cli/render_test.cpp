@@ -131,6 +131,29 @@ TEST(Render, PassesOverTrianglesWithoutArea) {
   EXPECT_EQ(draw(mesh).rgba, image.rgba);
 }
 
+TEST(Render, TakesVerticesAtOnePlaceForOne) {
+  const TriangleMesh mesh = make_sphere(4);
+  TriangleMesh soup{Points(3 * mesh.faces.rows(), 3), Faces(mesh.faces.rows(), 3)};
+  for (Eigen::Index i = 0; i < soup.vertices.rows(); ++i) {
+    // Every triangle turned inward.
+    const Eigen::Index c = 2 - i % 3;
+    soup.vertices.row(i) = mesh.vertices.row(mesh.faces(i / 3, c));
+    soup.faces(i / 3, i % 3) = static_cast<std::int32_t>(i);
+  }
+  EXPECT_LT(share_that_differs(draw(soup), draw(mesh), 2), 0.01);
+}
+
+TEST(Render, ShowsTrianglesThatAreThereBothWaysRoundAlikeFromBothSides) {
+  TriangleMesh mesh = grid(4);
+  const Eigen::Index m = mesh.faces.rows();
+  const std::array<int, 4> front = pixel(draw(mesh), 48, 48);
+  mesh.faces.conservativeResize(2 * m, 3);
+  mesh.faces.bottomRows(m) = mesh.faces.topRows(m).rowwise().reverse();
+  EXPECT_EQ(pixel(draw(mesh), 48, 48), front);
+  const std::array<int, 4> back = pixel(draw(mesh, {180.0, 0.0}), 48, 48);
+  EXPECT_NEAR(back[0], front[0], 3);
+}
+
 TEST(Render, DrawsASingleTriangleFromBothSides) {
   const TriangleMesh mesh = make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   const Image front = draw(mesh);

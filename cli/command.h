@@ -84,6 +84,7 @@ void add_eval(CLI::App& timbre, Context& context);
 void add_info(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
 void add_query(CLI::App& timbre, Context& context);
+void add_render(CLI::App& timbre, Context& context);
 void add_signature(CLI::App& timbre, Context& context);
 void add_spectrum(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);

@@ -3,10 +3,14 @@
 #include <zlib.h>
 
 #include <bit>
+#include <cstring>
 #include <limits>
+#include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/number_text.h"
 
 namespace timbre {
 namespace {
@@ -36,6 +40,160 @@ std::string shape_of(Eigen::Index rows, Eigen::Index cols) {
 template <typename Array>
 std::size_t bytes_of(const Array& array) {
   return static_cast<std::size_t>(array.size()) * sizeof(typename Array::Scalar);
+}
+
+struct NpyHeader {
+  std::string type;
+  bool fortran = false;
+  std::vector<std::int64_t> shape;
+};
+
+Error npy_error(const std::string& place, const std::string& cause) {
+  return {ErrorKind::bad_input, "", place, cause};
+}
+
+// Reads the header, a dictionary as Python writes it, from front to back.
+class NpyHeaderReader {
+ public:
+  explicit NpyHeaderReader(std::string_view text) : rest_(text) {}
+
+  NpyHeader read() {
+    NpyHeader header;
+    unsigned seen = 0;
+    expect('{');
+    while (!accept('}')) {
+      const std::string_view key = quoted();
+      expect(':');
+      if (key == "descr") {
+        header.type = quoted();
+      } else if (key == "fortran_order") {
+        header.fortran = truth();
+      } else if (key == "shape") {
+        header.shape = shape();
+      } else {
+        throw malformed();
+      }
+      const unsigned bit = key == "descr" ? 1U : key == "shape" ? 2U : 4U;
+      if ((seen & bit) != 0) throw malformed();
+      seen |= bit;
+      if (!accept(',') && (skip_blanks(), !rest_.starts_with('}'))) throw malformed();
+    }
+    skip_blanks();
+    if (seen != 7 || !rest_.empty()) throw malformed();
+    return header;
+  }
+
+ private:
+  static Error malformed() { return npy_error("header", "is not as NumPy writes it"); }
+
+  void skip_blanks() {
+    while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\n')) rest_.remove_prefix(1);
+  }
+
+  bool accept(char wanted) {
+    skip_blanks();
+    if (!rest_.starts_with(wanted)) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+
+  void expect(char wanted) {
+    if (!accept(wanted)) throw malformed();
+  }
+
+  std::string_view quoted() {
+    expect('\'');
+    const std::size_t end = rest_.find('\'');
+    if (end == std::string_view::npos) throw malformed();
+    const std::string_view word = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    return word;
+  }
+
+  bool truth() {
+    skip_blanks();
+    for (const std::string_view word : {"True", "False"}) {
+      if (!rest_.starts_with(word)) continue;
+      rest_.remove_prefix(word.size());
+      return word == "True";
+    }
+    throw malformed();
+  }
+
+  std::vector<std::int64_t> shape() {
+    std::vector<std::int64_t> sizes;
+    expect('(');
+    while (!accept(')')) {
+      skip_blanks();
+      std::size_t digits = 0;
+      while (digits < rest_.size() && rest_[digits] >= '0' && rest_[digits] <= '9') ++digits;
+      const std::optional<std::int64_t> size = parse_integer(rest_.substr(0, digits));
+      if (!size) throw malformed();
+      sizes.push_back(*size);
+      rest_.remove_prefix(digits);
+      if (!accept(',') && !rest_.starts_with(')')) throw malformed();
+    }
+    return sizes;
+  }
+
+  std::string_view rest_;
+};
+
+// Takes the header off the front.
+NpyHeader take_npy_header(std::string_view& bytes) {
+  if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
+    throw npy_error("", "is not a NumPy array");
+  }
+  const int version = static_cast<unsigned char>(bytes[6]);
+  if (version != 1 && version != 2) {
+    throw npy_error("header", "has format " + std::to_string(version) + "; 1 and 2 are read");
+  }
+  const std::size_t length_bytes = version == 1 ? 2 : 4;
+  std::size_t length = 0;
+  bytes.remove_prefix(8);
+  if (bytes.size() >= length_bytes) std::memcpy(&length, bytes.data(), length_bytes);
+  if (bytes.size() < length_bytes || bytes.size() - length_bytes < length) {
+    throw npy_error("header", "ends too soon");
+  }
+  NpyHeader header = NpyHeaderReader(bytes.substr(length_bytes, length)).read();
+  bytes.remove_prefix(length_bytes + length);
+  return header;
+}
+
+double to_double(std::int64_t value) {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 53;
+  if (value < -kLargest || value > kLargest) {
+    throw npy_error("data", std::to_string(value) + " is beyond the integers that a double holds");
+  }
+  return static_cast<double>(value);
+}
+
+template <typename Scalar>
+Eigen::MatrixXd npy_matrix(std::string_view data, const NpyHeader& header) {
+  const std::int64_t rows = header.shape[0];
+  const std::int64_t cols = header.shape.size() == 2 ? header.shape[1] : 1;
+  const auto count = static_cast<std::int64_t>(data.size() / sizeof(Scalar));
+  // By division: the product of the two may be beyond 64 bits.
+  const bool fits = cols == 0 ? count == 0 : count % cols == 0 && count / cols == rows;
+  if (!fits || data.size() % sizeof(Scalar) != 0) {
+    throw npy_error(
+        "data", "is " + std::to_string(data.size()) + " bytes, another size than its header says");
+  }
+  Eigen::MatrixXd matrix(rows, cols);
+  for (std::int64_t i = 0; i < rows; ++i) {
+    for (std::int64_t j = 0; j < cols; ++j) {
+      Scalar value{};
+      const std::int64_t at = header.fortran ? j * rows + i : i * cols + j;
+      std::memcpy(&value, data.data() + static_cast<std::size_t>(at) * sizeof(Scalar),
+                  sizeof(Scalar));
+      if constexpr (std::is_same_v<Scalar, std::int64_t>) {
+        matrix(i, j) = to_double(value);
+      } else {
+        matrix(i, j) = static_cast<double>(value);
+      }
+    }
+  }
+  return matrix;
 }
 
 class ZipWriter {
@@ -131,6 +289,20 @@ std::string to_npy(const std::string& ascii) {
   std::u32string wide(ascii.begin(), ascii.end());
   return npy("<U" + std::to_string(wide.size()), false, "", wide.data(),
              wide.size() * sizeof(char32_t));
+}
+
+Eigen::MatrixXd from_npy(std::string_view bytes) {
+  const NpyHeader header = take_npy_header(bytes);
+  if (header.shape.size() != 1 && header.shape.size() != 2) {
+    throw npy_error("header", "gives the array " + std::to_string(header.shape.size()) +
+                                  " dimensions; 1 and 2 are read");
+  }
+  if (header.type == "<f8") return npy_matrix<double>(bytes, header);
+  if (header.type == "<f4") return npy_matrix<float>(bytes, header);
+  if (header.type == "<i8") return npy_matrix<std::int64_t>(bytes, header);
+  if (header.type == "<i4") return npy_matrix<std::int32_t>(bytes, header);
+  throw npy_error("header", "gives the type '" + header.type.substr(0, 40) +
+                                "'; <f8, <f4, <i8 and <i4 are read");
 }
 
 std::string to_npz(const std::vector<NamedArray>& arrays) {

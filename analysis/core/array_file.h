@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace timbre {
@@ -19,6 +20,12 @@ namespace timbre {
     const Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>& faces);
 /// A zero-dimensional text; ASCII only.
 [[nodiscard]] std::string to_npy(const std::string& ascii);
+
+/// The array of a NumPy `.npy` file, format 1.0 or 2.0, of one or two dimensions, of
+/// little-endian float64, float32, int64 or int32, in either order; n numbers give n x 1.
+/// @throws Error  bad_input, with place and cause, for anything else, for data of another size
+///                than the header says, and for an int64 that no double holds
+[[nodiscard]] Eigen::MatrixXd from_npy(std::string_view bytes);
 
 /// One array of an archive: `bytes` as `to_npy` makes them.
 struct NamedArray {

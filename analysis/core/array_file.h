@@ -20,6 +20,10 @@ namespace timbre {
 /// A zero-dimensional text; ASCII only.
 [[nodiscard]] std::string to_npy(const std::string& ascii);
 
+/// What stands before the numbers of a matrix of float64 that follow column by column; of a
+/// vector if there is one column.
+[[nodiscard]] std::string npy_header(Eigen::Index rows, Eigen::Index cols);
+
 /// One array of an archive: `bytes` as `to_npy` makes them.
 struct NamedArray {
   std::string name;

@@ -115,20 +115,34 @@ void Wavefront::handle(const Event& event) {
   } else if (event.kind == EventKind::edge) {
     close_edge(event.index);
   } else {
-    slot(event.index).queued = false;
-    if (slot(event.index).listed) {
-      const Window window = slot(event.index).window;
-      cross_edge(window);
-    } else {
-      slot(event.index).next = std::exchange(free_slot_, event.index);
-    }
+    handle_window(event.index);
   }
 }
 
-void Wavefront::push(double at_distance, EventKind kind, std::int32_t index) {
-  if (at_distance > horizon_) return;
+void Wavefront::handle_window(std::int32_t index) {
+  Slot& s = slot(index);
+  s.queued = false;
+  --edge_state(mesh_.sides[at(s.window.side)].edge).queued;
+  if (s.listed) {
+    const Window window = s.window;
+    cross_edge(window);
+  } else {
+    s.next = std::exchange(free_slot_, index);
+  }
+}
+
+// Whether it is near enough to be of interest.
+bool Wavefront::push(double at_distance, EventKind kind, std::int32_t index) {
+  if (at_distance > horizon_) return false;
   events_.push_back({at_distance, kind, index});
   std::push_heap(events_.begin(), events_.end(), kLater);
+  return true;
+}
+
+void Wavefront::queue_window(std::int32_t index) {
+  Slot& s = slot(index);
+  s.queued = push(s.window.nearest(), EventKind::window, index);
+  if (s.queued) ++edge_state(mesh_.sides[at(s.window.side)].edge).queued;
 }
 
 void Wavefront::touch(std::int32_t vertex) {
@@ -252,18 +266,23 @@ void Wavefront::cross_triangle(const Window& window, std::int32_t s) {
 // the window's far end, it is so everywhere in it (Xin and Wang 2009, section 3.2).
 bool Wavefront::can_matter(const Window& window) const {
   const GeodesicMesh::Edge& edge = mesh_.edges[at(mesh_.sides[at(window.side)].edge)];
-  return !(window.distance_at(window.end) > vertices_[at(edge.low)].distance + window.end + kTie) &&
-         !(window.distance_at(window.begin) >
-           vertices_[at(edge.high)].distance + (edge.length - window.begin) + kTie);
+  // Squares, to save the roots.
+  const auto beaten = [&window](double position, double through_vertex) {
+    const double along = position - window.x;
+    const double room = through_vertex + kTie - window.base;
+    return room < 0.0 || along * along + window.y * window.y > room * room;
+  };
+  return !beaten(window.end, vertices_[at(edge.low)].distance + window.end) &&
+         !beaten(window.begin, vertices_[at(edge.high)].distance + (edge.length - window.begin));
 }
 
 // Whether a path through the window, straight on in space, could be the shortest to a target.
-bool Wavefront::leads_to_target(const Window& window, double nearest) {
+bool Wavefront::leads_to_target(const Window& window) {
   if (targets_.empty()) return true;
   const GeodesicMesh::Edge& edge = mesh_.edges[at(mesh_.sides[at(window.side)].edge)];
   const double from_low = detour(edge.low) - window.end;
   const double from_high = detour(edge.high) - (edge.length - window.begin);
-  return nearest + std::max(from_low, from_high) <= kTargetSlack;
+  return window.nearest() + std::max(from_low, from_high) <= kTargetSlack;
 }
 
 double Wavefront::detour(std::int32_t vertex) {
@@ -285,7 +304,7 @@ void Wavefront::add(const Window& window) {
   if (front_ >= state.closes) return;
   // A source in the line of the edge shows something beyond it only from between its ends.
   if (!(window.y > 0.0) && !(window.begin < window.x && window.x < window.end)) return;
-  if (!can_matter(window) || !leads_to_target(window, window.nearest())) return;
+  if (!can_matter(window) || !leads_to_target(window)) return;
   if (!state.touched) touched_edges_.push_back(edge);
   state.touched = true;
   insert(window, edge);
@@ -323,7 +342,8 @@ void Wavefront::insert(Window fresh, std::int32_t edge) {
     fresh.begin = std::max(fresh.begin, slot(place.previous).window.end);
   }
   while (fresh.end - fresh.begin > least) {
-    const double next_begin = place.next == kNone ? kInfinity : slot(place.next).window.begin;
+    double next_begin = kInfinity;
+    if (place.next != kNone) next_begin = slot(place.next).window.begin;
     if (fresh.end - next_begin <= least) {
       put(fresh, fresh.begin, std::min(fresh.end, next_begin), place);
       break;
@@ -334,12 +354,7 @@ void Wavefront::insert(Window fresh, std::int32_t edge) {
     }
     settle_overlap(fresh, place, least);
   }
-  for (const std::int32_t index : fresh_slots_) {
-    const double nearest = slot(index).window.nearest();
-    if (nearest > horizon_) continue;
-    slot(index).queued = true;
-    push(nearest, EventKind::window, index);
-  }
+  for (const std::int32_t index : fresh_slots_) queue_window(index);
 }
 
 // The next window covers the beginning of the fresh one: each stretch goes to the nearer.
@@ -386,9 +401,7 @@ void Wavefront::give_up_stretch(double begin, double end, double least, Place& p
   link(right, place);
   place.previous = left;
   place.next = right;
-  if (!queued) return;
-  slot(right).queued = true;
-  push(rest.nearest(), EventKind::window, right);
+  if (queued) queue_window(right);
 }
 
 // Puts a stretch of a window between the neighbours of the place.
@@ -440,7 +453,15 @@ void Wavefront::unlink_next(Place& place) {
 }
 
 void Wavefront::close_edge(std::int32_t edge) {
-  Place place{edge, kNone, edge_state(edge).first, kNone};
+  EdgeState& state = edge_state(edge);
+  if (state.first == kNone) return;
+  if (state.queued == 0) {
+    // All at once, without looking at each.
+    slot(state.last).next = std::exchange(free_slot_, state.first);
+    state.first = state.last = kNone;
+    return;
+  }
+  Place place{edge, kNone, state.first, kNone};
   while (place.next != kNone) unlink_next(place);
 }
 

@@ -49,10 +49,11 @@ class Wavefront {
   struct EdgeState {
     std::int32_t first = kNone;  ///< of its windows, in order
     std::int32_t last = kNone;
+    std::int32_t queued = 0;    ///< windows of the edge in the queue, listed or not
     double closes = kInfinity;  ///< the front's distance from which nothing better comes
     bool touched = false;
   };
-  struct Slot {
+  struct alignas(64) Slot {  // one cache line
     Window window;
     std::int32_t previous = kNone;  ///< on the edge
     std::int32_t next = kNone;      ///< on the edge, or among free slots
@@ -78,7 +79,9 @@ class Wavefront {
   [[nodiscard]] bool spread_all(const std::function<bool()>& keep_going);
   void spread_next();
   void handle(const Event& event);
-  void push(double at, EventKind kind, std::int32_t index);
+  bool push(double at, EventKind kind, std::int32_t index);
+  void handle_window(std::int32_t index);
+  void queue_window(std::int32_t index);
 
   void lower(std::int32_t vertex, double distance);
   void touch(std::int32_t vertex);
@@ -90,7 +93,7 @@ class Wavefront {
   void cross_edge(const Window& window);
   void cross_triangle(const Window& window, std::int32_t side);
   [[nodiscard]] bool can_matter(const Window& window) const;
-  [[nodiscard]] bool leads_to_target(const Window& window, double nearest);
+  [[nodiscard]] bool leads_to_target(const Window& window);
   [[nodiscard]] double detour(std::int32_t vertex);
   void add(const Window& window);
   void insert(Window fresh, std::int32_t edge);

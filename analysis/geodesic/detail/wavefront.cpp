@@ -19,13 +19,6 @@ constexpr std::uint32_t kEventsBetweenQuestions = 1U << 14U;  // a few milliseco
 // With more targets, looking where each lies costs more than it saves.
 constexpr std::size_t kMostTargets = 64;
 
-// The nearest event on top of the heap. Ties by kind and index, to be deterministic.
-constexpr auto kLater = [](const auto& a, const auto& b) {
-  if (a.at != b.at) return a.at > b.at;
-  if (a.kind != b.kind) return a.kind > b.kind;
-  return a.index > b.index;
-};
-
 // Straight distances to targets are rounded otherwise than paths.
 constexpr double kTargetSlack = 1e-12;
 
@@ -78,9 +71,8 @@ void Wavefront::bound_targets(std::span<const std::int32_t> targets, double limi
   std::vector<std::int32_t> left(targets.begin(), targets.end());
   const auto is_final = [this](std::int32_t v) { return vertices_[at(v)].spread != kInfinity; };
   while (!events_.empty() && !left.empty()) {
-    const std::int32_t vertex = events_.front().index;
     spread_next();
-    if (vertex == left.back()) std::erase_if(left, is_final);
+    if (is_final(left.back())) std::erase_if(left, is_final);
   }
   events_.clear();
   horizon_ = 0.0;
@@ -102,20 +94,18 @@ bool Wavefront::spread_all(const std::function<bool()>& keep_going) {
 }
 
 void Wavefront::spread_next() {
-  const Event event = events_.front();
-  std::pop_heap(events_.begin(), events_.end(), kLater);
-  events_.pop_back();
+  const auto event = events_.pop();
   front_ = event.at;
-  handle(event);
+  handle(event.payload);
 }
 
-void Wavefront::handle(const Event& event) {
-  if (event.kind == EventKind::vertex) {
-    spread_vertex(event.index);
-  } else if (event.kind == EventKind::edge) {
-    close_edge(event.index);
+void Wavefront::handle(const What& what) {
+  if (what.kind == EventKind::vertex) {
+    spread_vertex(what.index);
+  } else if (what.kind == EventKind::edge) {
+    close_edge(what.index);
   } else {
-    handle_window(event.index);
+    handle_window(what.index);
   }
 }
 
@@ -134,8 +124,7 @@ void Wavefront::handle_window(std::int32_t index) {
 // Whether it is near enough to be of interest.
 bool Wavefront::push(double at_distance, EventKind kind, std::int32_t index) {
   if (at_distance > horizon_) return false;
-  events_.push_back({at_distance, kind, index});
-  std::push_heap(events_.begin(), events_.end(), kLater);
+  events_.push(at_distance, {kind, index});
   return true;
 }
 
@@ -163,7 +152,7 @@ void Wavefront::lower(std::int32_t vertex, double distance) {
 
 void Wavefront::spread_vertex(std::int32_t vertex) {
   VertexState& state = vertices_[at(vertex)];
-  if (front_ > state.distance || !(state.distance < state.spread - kTie)) return;  // told already
+  if (!(state.distance < state.spread - kTie)) return;  // told already
   state.spread = state.distance;
   tell_neighbours(vertex);
   if (only_graph_) return;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "timbre/analysis/geodesic/detail/event_queue.h"
 #include "timbre/analysis/geodesic/detail/window.h"
 #include "timbre/analysis/geodesic/geodesic_mesh.h"
 
@@ -61,8 +62,7 @@ class Wavefront {
     bool queued = false;
   };
   enum class EventKind : std::uint8_t { window, vertex, edge };
-  struct Event {
-    double at = 0.0;
+  struct What {
     EventKind kind = EventKind::window;
     std::int32_t index = 0;
   };
@@ -78,7 +78,7 @@ class Wavefront {
   void bound_targets(std::span<const std::int32_t> targets, double limit);
   [[nodiscard]] bool spread_all(const std::function<bool()>& keep_going);
   void spread_next();
-  void handle(const Event& event);
+  void handle(const What& what);
   bool push(double at, EventKind kind, std::int32_t index);
   void handle_window(std::int32_t index);
   void queue_window(std::int32_t index);
@@ -117,7 +117,7 @@ class Wavefront {
   std::vector<std::int32_t> touched_edges_;
   std::vector<Slot> slots_;
   std::int32_t free_slot_ = kNone;
-  std::vector<Event> events_;  ///< a heap
+  EventQueue<What> events_;
   std::vector<std::int32_t> fresh_slots_;
   std::vector<std::int32_t> targets_;  ///< with a path to each
   std::vector<double> bounds_;         ///< length of that path

@@ -79,6 +79,7 @@ void catch_interrupts();
 // One function per command, in commands/: adds the subcommand and its callback.
 void add_dataset(CLI::App& timbre, Context& context);
 void add_db(CLI::App& timbre, Context& context);
+void add_distance(CLI::App& timbre, Context& context);
 void add_embed(CLI::App& timbre, Context& context);
 void add_eval(CLI::App& timbre, Context& context);
 void add_info(CLI::App& timbre, Context& context);

@@ -42,6 +42,7 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   add_spectrum(app, context);
   add_signature(app, context);
   add_embed(app, context);
+  add_distance(app, context);
   add_db(app, context);
   add_query(app, context);
   add_match(app, context);

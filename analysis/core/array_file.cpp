@@ -265,6 +265,11 @@ class ZipWriter {
 
 }  // namespace
 
+std::string npy_header(Eigen::Index rows, Eigen::Index cols) {
+  return cols == 1 ? npy("<f8", false, std::to_string(rows) + ",", nullptr, 0)
+                   : npy("<f8", true, shape_of(rows, cols), nullptr, 0);
+}
+
 std::string to_npy(const Eigen::MatrixXd& matrix) {
   return npy("<f8", true, shape_of(matrix.rows(), matrix.cols()), matrix.data(), bytes_of(matrix));
 }

@@ -27,6 +27,10 @@ namespace timbre {
 ///                than the header says, and for an int64 that no double holds
 [[nodiscard]] Eigen::MatrixXd from_npy(std::string_view bytes);
 
+/// What stands before the numbers of a matrix of float64 that follow column by column; of a
+/// vector if there is one column.
+[[nodiscard]] std::string npy_header(Eigen::Index rows, Eigen::Index cols);
+
 /// One array of an archive: `bytes` as `to_npy` makes them.
 struct NamedArray {
   std::string name;

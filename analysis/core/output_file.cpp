@@ -149,14 +149,32 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
-void write_file(const std::string& path, std::string_view content, bool overwrite) {
+struct OutputFile::Impl {
+  Target target;
+  TemporaryFile temporary;
+  bool overwrite;
+};
+
+OutputFile::OutputFile(const std::string& path, bool overwrite) {
   const Target target = find_target(path, overwrite);
-  {
-    TemporaryFile temporary(path, target);
-    temporary.write(content);
-    temporary.become_target(overwrite);
-  }
-  sync_folder_of(target.path);
+  impl_.reset(new Impl{target, TemporaryFile(path, target), overwrite});
+}
+
+OutputFile::~OutputFile() = default;
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&&) noexcept = default;
+
+void OutputFile::write(std::string_view content) { impl_->temporary.write(content); }
+
+void OutputFile::commit() {
+  impl_->temporary.become_target(impl_->overwrite);
+  sync_folder_of(impl_->target.path);
+}
+
+void write_file(const std::string& path, std::string_view content, bool overwrite) {
+  OutputFile file(path, overwrite);
+  file.write(content);
+  file.commit();
 }
 
 void require_writable(const std::string& path, bool overwrite) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,27 @@ namespace timbre {
 /// @throws Error  io, with what the system said; bad_request if the file exists, or if
 ///                a device, a pipe or a broken link is in its place
 void write_file(const std::string& path, std::string_view content, bool overwrite);
+
+/// A file written piece by piece, as `write_file` does: nobody sees it before `commit`, and
+/// nothing is left of it without.
+class OutputFile {
+ public:
+  /// @throws Error  as `write_file`
+  OutputFile(const std::string& path, bool overwrite);
+  ~OutputFile();
+  OutputFile(OutputFile&&) noexcept;
+  OutputFile& operator=(OutputFile&&) noexcept;
+
+  /// @throws Error  io
+  void write(std::string_view content);
+  /// Gives the file its name; once, and last.
+  /// @throws Error  io; bad_request if there is a file of that name by now
+  void commit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Throws what `write_file` would, as far as it can be known without writing: to be called
 /// before long work.

@@ -19,13 +19,6 @@ constexpr std::uint32_t kEventsBetweenQuestions = 1U << 14U;  // a few milliseco
 // With more targets, looking where each lies costs more than it saves.
 constexpr std::size_t kMostTargets = 64;
 
-// The nearest event on top of the heap. Ties by kind and index, to be deterministic.
-constexpr auto kLater = [](const auto& a, const auto& b) {
-  if (a.at != b.at) return a.at > b.at;
-  if (a.kind != b.kind) return a.kind > b.kind;
-  return a.index > b.index;
-};
-
 // Straight distances to targets are rounded otherwise than paths.
 constexpr double kTargetSlack = 1e-12;
 
@@ -78,9 +71,8 @@ void Wavefront::bound_targets(std::span<const std::int32_t> targets, double limi
   std::vector<std::int32_t> left(targets.begin(), targets.end());
   const auto is_final = [this](std::int32_t v) { return vertices_[at(v)].spread != kInfinity; };
   while (!events_.empty() && !left.empty()) {
-    const std::int32_t vertex = events_.front().index;
     spread_next();
-    if (vertex == left.back()) std::erase_if(left, is_final);
+    if (is_final(left.back())) std::erase_if(left, is_final);
   }
   events_.clear();
   horizon_ = 0.0;
@@ -102,33 +94,44 @@ bool Wavefront::spread_all(const std::function<bool()>& keep_going) {
 }
 
 void Wavefront::spread_next() {
-  const Event event = events_.front();
-  std::pop_heap(events_.begin(), events_.end(), kLater);
-  events_.pop_back();
+  const auto event = events_.pop();
   front_ = event.at;
-  handle(event);
+  handle(event.payload);
 }
 
-void Wavefront::handle(const Event& event) {
-  if (event.kind == EventKind::vertex) {
-    spread_vertex(event.index);
-  } else if (event.kind == EventKind::edge) {
-    close_edge(event.index);
+void Wavefront::handle(const What& what) {
+  if (what.kind == EventKind::vertex) {
+    spread_vertex(what.index);
+  } else if (what.kind == EventKind::edge) {
+    close_edge(what.index);
   } else {
-    slot(event.index).queued = false;
-    if (slot(event.index).listed) {
-      const Window window = slot(event.index).window;
-      cross_edge(window);
-    } else {
-      slot(event.index).next = std::exchange(free_slot_, event.index);
-    }
+    handle_window(what.index);
   }
 }
 
-void Wavefront::push(double at_distance, EventKind kind, std::int32_t index) {
-  if (at_distance > horizon_) return;
-  events_.push_back({at_distance, kind, index});
-  std::push_heap(events_.begin(), events_.end(), kLater);
+void Wavefront::handle_window(std::int32_t index) {
+  Slot& s = slot(index);
+  s.queued = false;
+  --edge_state(mesh_.sides[at(s.window.side)].edge).queued;
+  if (s.listed) {
+    const Window window = s.window;
+    cross_edge(window);
+  } else {
+    s.next = std::exchange(free_slot_, index);
+  }
+}
+
+// Whether it is near enough to be of interest.
+bool Wavefront::push(double at_distance, EventKind kind, std::int32_t index) {
+  if (at_distance > horizon_) return false;
+  events_.push(at_distance, {kind, index});
+  return true;
+}
+
+void Wavefront::queue_window(std::int32_t index) {
+  Slot& s = slot(index);
+  s.queued = push(s.window.nearest(), EventKind::window, index);
+  if (s.queued) ++edge_state(mesh_.sides[at(s.window.side)].edge).queued;
 }
 
 void Wavefront::touch(std::int32_t vertex) {
@@ -149,7 +152,7 @@ void Wavefront::lower(std::int32_t vertex, double distance) {
 
 void Wavefront::spread_vertex(std::int32_t vertex) {
   VertexState& state = vertices_[at(vertex)];
-  if (front_ > state.distance || !(state.distance < state.spread - kTie)) return;  // told already
+  if (!(state.distance < state.spread - kTie)) return;  // told already
   state.spread = state.distance;
   tell_neighbours(vertex);
   if (only_graph_) return;
@@ -252,18 +255,23 @@ void Wavefront::cross_triangle(const Window& window, std::int32_t s) {
 // the window's far end, it is so everywhere in it (Xin and Wang 2009, section 3.2).
 bool Wavefront::can_matter(const Window& window) const {
   const GeodesicMesh::Edge& edge = mesh_.edges[at(mesh_.sides[at(window.side)].edge)];
-  return !(window.distance_at(window.end) > vertices_[at(edge.low)].distance + window.end + kTie) &&
-         !(window.distance_at(window.begin) >
-           vertices_[at(edge.high)].distance + (edge.length - window.begin) + kTie);
+  // Squares, to save the roots.
+  const auto beaten = [&window](double position, double through_vertex) {
+    const double along = position - window.x;
+    const double room = through_vertex + kTie - window.base;
+    return room < 0.0 || along * along + window.y * window.y > room * room;
+  };
+  return !beaten(window.end, vertices_[at(edge.low)].distance + window.end) &&
+         !beaten(window.begin, vertices_[at(edge.high)].distance + (edge.length - window.begin));
 }
 
 // Whether a path through the window, straight on in space, could be the shortest to a target.
-bool Wavefront::leads_to_target(const Window& window, double nearest) {
+bool Wavefront::leads_to_target(const Window& window) {
   if (targets_.empty()) return true;
   const GeodesicMesh::Edge& edge = mesh_.edges[at(mesh_.sides[at(window.side)].edge)];
   const double from_low = detour(edge.low) - window.end;
   const double from_high = detour(edge.high) - (edge.length - window.begin);
-  return nearest + std::max(from_low, from_high) <= kTargetSlack;
+  return window.nearest() + std::max(from_low, from_high) <= kTargetSlack;
 }
 
 double Wavefront::detour(std::int32_t vertex) {
@@ -285,7 +293,7 @@ void Wavefront::add(const Window& window) {
   if (front_ >= state.closes) return;
   // A source in the line of the edge shows something beyond it only from between its ends.
   if (!(window.y > 0.0) && !(window.begin < window.x && window.x < window.end)) return;
-  if (!can_matter(window) || !leads_to_target(window, window.nearest())) return;
+  if (!can_matter(window) || !leads_to_target(window)) return;
   if (!state.touched) touched_edges_.push_back(edge);
   state.touched = true;
   insert(window, edge);
@@ -323,7 +331,8 @@ void Wavefront::insert(Window fresh, std::int32_t edge) {
     fresh.begin = std::max(fresh.begin, slot(place.previous).window.end);
   }
   while (fresh.end - fresh.begin > least) {
-    const double next_begin = place.next == kNone ? kInfinity : slot(place.next).window.begin;
+    double next_begin = kInfinity;
+    if (place.next != kNone) next_begin = slot(place.next).window.begin;
     if (fresh.end - next_begin <= least) {
       put(fresh, fresh.begin, std::min(fresh.end, next_begin), place);
       break;
@@ -334,12 +343,7 @@ void Wavefront::insert(Window fresh, std::int32_t edge) {
     }
     settle_overlap(fresh, place, least);
   }
-  for (const std::int32_t index : fresh_slots_) {
-    const double nearest = slot(index).window.nearest();
-    if (nearest > horizon_) continue;
-    slot(index).queued = true;
-    push(nearest, EventKind::window, index);
-  }
+  for (const std::int32_t index : fresh_slots_) queue_window(index);
 }
 
 // The next window covers the beginning of the fresh one: each stretch goes to the nearer.
@@ -386,9 +390,7 @@ void Wavefront::give_up_stretch(double begin, double end, double least, Place& p
   link(right, place);
   place.previous = left;
   place.next = right;
-  if (!queued) return;
-  slot(right).queued = true;
-  push(rest.nearest(), EventKind::window, right);
+  if (queued) queue_window(right);
 }
 
 // Puts a stretch of a window between the neighbours of the place.
@@ -440,7 +442,15 @@ void Wavefront::unlink_next(Place& place) {
 }
 
 void Wavefront::close_edge(std::int32_t edge) {
-  Place place{edge, kNone, edge_state(edge).first, kNone};
+  EdgeState& state = edge_state(edge);
+  if (state.first == kNone) return;
+  if (state.queued == 0) {
+    // All at once, without looking at each.
+    slot(state.last).next = std::exchange(free_slot_, state.first);
+    state.first = state.last = kNone;
+    return;
+  }
+  Place place{edge, kNone, state.first, kNone};
   while (place.next != kNone) unlink_next(place);
 }
 

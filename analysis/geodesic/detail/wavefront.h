@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "timbre/analysis/geodesic/detail/event_queue.h"
 #include "timbre/analysis/geodesic/detail/window.h"
 #include "timbre/analysis/geodesic/geodesic_mesh.h"
 
@@ -49,10 +50,11 @@ class Wavefront {
   struct EdgeState {
     std::int32_t first = kNone;  ///< of its windows, in order
     std::int32_t last = kNone;
+    std::int32_t queued = 0;    ///< windows of the edge in the queue, listed or not
     double closes = kInfinity;  ///< the front's distance from which nothing better comes
     bool touched = false;
   };
-  struct Slot {
+  struct alignas(64) Slot {  // one cache line
     Window window;
     std::int32_t previous = kNone;  ///< on the edge
     std::int32_t next = kNone;      ///< on the edge, or among free slots
@@ -60,8 +62,7 @@ class Wavefront {
     bool queued = false;
   };
   enum class EventKind : std::uint8_t { window, vertex, edge };
-  struct Event {
-    double at = 0.0;
+  struct What {
     EventKind kind = EventKind::window;
     std::int32_t index = 0;
   };
@@ -77,8 +78,10 @@ class Wavefront {
   void bound_targets(std::span<const std::int32_t> targets, double limit);
   [[nodiscard]] bool spread_all(const std::function<bool()>& keep_going);
   void spread_next();
-  void handle(const Event& event);
-  void push(double at, EventKind kind, std::int32_t index);
+  void handle(const What& what);
+  bool push(double at, EventKind kind, std::int32_t index);
+  void handle_window(std::int32_t index);
+  void queue_window(std::int32_t index);
 
   void lower(std::int32_t vertex, double distance);
   void touch(std::int32_t vertex);
@@ -90,7 +93,7 @@ class Wavefront {
   void cross_edge(const Window& window);
   void cross_triangle(const Window& window, std::int32_t side);
   [[nodiscard]] bool can_matter(const Window& window) const;
-  [[nodiscard]] bool leads_to_target(const Window& window, double nearest);
+  [[nodiscard]] bool leads_to_target(const Window& window);
   [[nodiscard]] double detour(std::int32_t vertex);
   void add(const Window& window);
   void insert(Window fresh, std::int32_t edge);
@@ -114,7 +117,7 @@ class Wavefront {
   std::vector<std::int32_t> touched_edges_;
   std::vector<Slot> slots_;
   std::int32_t free_slot_ = kNone;
-  std::vector<Event> events_;  ///< a heap
+  EventQueue<What> events_;
   std::vector<std::int32_t> fresh_slots_;
   std::vector<std::int32_t> targets_;  ///< with a path to each
   std::vector<double> bounds_;         ///< length of that path

@@ -25,6 +25,15 @@ TEST(ToNpy, HeaderFillsABlockAndDataFollow) {
   EXPECT_EQ(second, 4.0);  // column-major
 }
 
+TEST(NpyHeader, IsThatOfTheWholeArray) {
+  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Ones(5, 3);
+  const std::string header = npy_header(5, 3);
+  EXPECT_EQ(to_npy(matrix).substr(0, header.size()), header);
+  EXPECT_EQ(to_npy(matrix).size(), header.size() + 15 * sizeof(double));
+  const std::string of_vector = npy_header(5, 1);
+  EXPECT_EQ(to_npy(Eigen::VectorXd(matrix.col(0))).substr(0, of_vector.size()), of_vector);
+}
+
 TEST(ToNpy, KeepsTheTypeOfIndices) {
   const std::string bytes = to_npy(Eigen::VectorXi(Eigen::VectorXi::LinSpaced(4, 0, 3)));
   EXPECT_NE(bytes.find("'descr': '<i4', 'fortran_order': False, 'shape': (4,)"), std::string::npos);

@@ -70,6 +70,32 @@ TEST(WriteFile, RefusesWhatIsNoRegularFile) {
   EXPECT_FALSE(std::filesystem::exists(folder / "none"));
 }
 
+TEST(OutputFile, AppearsWholeOrNotAtAll) {
+  const TemporaryFolder folder;
+  {
+    OutputFile file(folder / "a.txt", false);
+    file.write("never ");
+    file.write("seen");
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
+  OutputFile file(folder / "a.txt", false);
+  file.write("in ");
+  file.write("pieces");
+  file.commit();
+  EXPECT_EQ(file_content(folder / "a.txt"), "in pieces");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(OutputFile, DoesNotReplaceAFileThatAppearedMeanwhile) {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "a.txt", false);
+  file.write("new");
+  put_file(folder / "a.txt", "old");
+  EXPECT_THROW(file.commit(), Error);
+  EXPECT_EQ(file_content(folder / "a.txt"), "old");
+}
+
 TEST(RequireWritable, RefusesWhatWriteFileWouldAndWritesNothing) {
   const TemporaryFolder folder;
   require_writable(folder / "a.txt", false);

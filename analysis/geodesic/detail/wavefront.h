@@ -39,6 +39,10 @@ class Wavefront {
 
  private:
   static constexpr std::int32_t kNone = -1;
+  // In units of the prepared mesh, whose size is near 1. A window must be worse by more than
+  // this to be dropped for a path through a vertex, and better by more than this to take a
+  // stretch from another: equal windows neither vanish both nor chase each other for ever.
+  static constexpr double kTie = 1e-14;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   struct VertexState {

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -161,7 +163,14 @@ nlohmann::json parameters(const Arguments& args) {
           {"version", version_text()}};
 }
 
+void create_map_folder(const std::string& folder) {
+  std::error_code failure;
+  if (!folder.empty()) std::filesystem::create_directories(folder, failure);
+  if (failure) throw Error(ErrorKind::io, folder, "", failure.message());
+}
+
 std::vector<nlohmann::json> judge_set(const Arguments& args, const Context& context) {
+  create_map_folder(args.judge.save);
   const ShapeSet set = read_shape_set(args.inputs.front());
   const auto work = work_of(args, set);
   std::optional<ResultLog> log;
@@ -200,8 +209,10 @@ void require_sense(const Arguments& args, const Context& context) {
   if (is_set(args) && !args.judge.truth.empty()) {
     throw Error(ErrorKind::bad_request, "", "truth", "is of one map; a set has its own");
   }
-  if (!is_set(args) && (!args.judge.maps.empty() || !context.output.empty() || args.number > 0)) {
-    throw Error(ErrorKind::bad_request, "", "inputs", "--maps, -n and -o are for sets");
+  if (!is_set(args) && (!args.judge.maps.empty() || !args.judge.save.empty() ||
+                        !context.output.empty() || args.number > 0)) {
+    throw Error(ErrorKind::bad_request, "", "inputs",
+                "--maps, --save-maps, -n and -o are for sets");
   }
 }
 
@@ -247,6 +258,8 @@ void add_eval_match(CLI::App& eval, Context& context) {
       ->default_str("exact");
   command.add_option("--maps", args->judge.maps,
                      "judge SOURCE_TARGET.txt (sym: MESH.txt) of this folder instead of computing");
+  command.add_option("--save-maps", args->judge.save,
+                     "keep the computed maps in this folder, named as --maps wants them");
   command.add_option("--truth", args->judge.truth,
                      "of one map: a vertex of TARGET for each of SOURCE, from 0, -1 = none");
   command

@@ -5,6 +5,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/stopwatch.h"
+#include "timbre/cli/commands/map_output.h"
 #include "timbre/matching/classic/functional_map.h"
 #include "timbre/matching/match.h"
 #include "timbre/matching/symmetry.h"
@@ -85,8 +86,12 @@ Judged MapJudge::judge_pair(const ShapeSet& set, const std::string& source,
   Stopwatch watch;
   const bool is_given = !options_.maps.empty();
   const std::vector<std::int32_t> map =
-      is_given ? listed_map(map_file(source, target), A, B) : compute(a, A, b, B, judged.made);
+      is_given ? listed_map(map_file(options_.maps, source, target), A, B)
+               : compute(a, A, b, B, judged.made);
   if (!is_given) judged.made["seconds"] = watch.lap();
+  if (!options_.save.empty()) {
+    context_.write_result(map_file(options_.save, source, target), to_lines(map));
+  }
   for_file(b.file, [&] { compare(map, truth, set, b, B, judged); });
   return judged;
 }
@@ -113,11 +118,12 @@ void MapJudge::compare(const std::vector<std::int32_t>& map, const Truth& truth,
   judged.mirrored_error = score_map(map, opposite, scale, context_.threads).mean_error;
 }
 
-std::string MapJudge::map_file(const std::string& source, const std::string& target) const {
+std::string MapJudge::map_file(const std::string& folder, const std::string& source,
+                               const std::string& target) const {
   const auto stem = [](const std::string& name) { return name.substr(0, name.find_last_of('.')); };
   const std::string name =
       options_.kind == TruthKind::symmetry ? stem(source) : stem(source) + "_" + stem(target);
-  return (fs::path(options_.maps) / (name + ".txt")).string();
+  return (fs::path(folder) / (name + ".txt")).string();
 }
 
 // Spectra are the costly part of a pair; those of the last few shapes are kept, the latest

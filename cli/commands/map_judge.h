@@ -25,6 +25,7 @@ struct JudgeOptions {
   int count = 200;    ///< eigenfunctions
   std::string maps;   ///< folder of maps to judge; empty: compute them
   std::string truth;  ///< of one map; empty: what lies beside the meshes
+  std::string save;   ///< folder for the maps that are computed; empty: they are not kept
 };
 
 /// A map, compared with the truth.
@@ -57,7 +58,8 @@ class MapJudge {
                                const SetShape& b, const TriangleMesh& B) const;
   void compare(const std::vector<std::int32_t>& map, const Truth& truth, const ShapeSet& set,
                const SetShape& target, const TriangleMesh& B, Judged& judged) const;
-  [[nodiscard]] std::string map_file(const std::string& source, const std::string& target) const;
+  [[nodiscard]] std::string map_file(const std::string& folder, const std::string& source,
+                                     const std::string& target) const;
   [[nodiscard]] const MatchSurface& surface(const SetShape& shape, const TriangleMesh& mesh);
   [[nodiscard]] std::vector<std::int32_t> compute(const SetShape& a, const TriangleMesh& A,
                                                   const SetShape& b, const TriangleMesh& B,

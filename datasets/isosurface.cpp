@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -18,7 +19,9 @@ using Eigen::Vector3i;
 
 constexpr double kSnap = 0.3;    // lattice points closer than this, in cells, move
 constexpr double kMargin = 2.0;  // of lattice around the box, in cells
-constexpr int kRounds = 12;      // of relaxation; more changes little
+constexpr double kFar = 4.0;     // in half cells; tetrahedra are two long
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kRounds = 12;  // of relaxation; more changes little
 
 // A body-centred cubic lattice, turned by 45 degrees about y: then the plane x = 0 is one
 // of the planes that cut no tetrahedron. Nodes are (u, v, w) with an even sum, at
@@ -73,8 +76,8 @@ class Lattice {
     return corner_ + step_.cwiseProduct(at.cast<double>());
   }
 
-  // Nodes near the surface count as on it. Nodes that the value at the node before keeps
-  // clear of it have that node's sign, and no value of their own.
+  // Nodes near the surface count as on it, and nodes that no tetrahedron joins to it as
+  // infinitely far. Many of these the value at another node tells.
   void evaluate(double snap) {
     value_.assign(static_cast<std::size_t>(size_.cast<Node>().prod()), 0.0);
     for (int u = 0; u < size_[0]; ++u) {
@@ -88,6 +91,7 @@ class Lattice {
             known = detail::distance_estimate(here);
             // Half, because the slope may be a little above 1.
             clear = static_cast<int>(0.5 * std::abs(here.value) / (2.0 * step_.y())) - 1;
+            if (std::abs(here.value) > kFar * step_.y()) known = std::copysign(kInfinity, known);
           }
           value_[static_cast<std::size_t>(n)] = std::abs(known) < snap ? 0.0 : known;
         }
@@ -97,6 +101,7 @@ class Lattice {
 
   // All tetrahedra whose long edge starts at an odd node and runs up an axis.
   void cut_around(const Vector3i& from) {
+    if (const Node n = node(from); n < 0 || std::isinf(value_[static_cast<std::size_t>(n)])) return;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3i along = Vector3i::Unit(axis);
       const Vector3i side = Vector3i::Unit((axis + 1) % 3);

@@ -119,9 +119,9 @@ MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
   score.errors = scale.between(image, right, threads);
   const auto answered = static_cast<double>(image.size());
   score.matched = truth.source.empty() ? 0.0 : answered / static_cast<double>(score.rows);
-  score.mean_error = image.empty()
-                         ? std::numeric_limits<double>::quiet_NaN()
-                         : std::accumulate(score.errors.begin(), score.errors.end(), 0.0) / answered;
+  score.mean_error =
+      image.empty() ? std::numeric_limits<double>::quiet_NaN()
+                    : std::accumulate(score.errors.begin(), score.errors.end(), 0.0) / answered;
   if (!image.empty()) score.below5 = score.share_below(kFound) / score.matched;
   score.found = score.mean_error < kFound && score.matched >= (truth.partial ? 0.9 : 1.0);
   return score;

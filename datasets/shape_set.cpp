@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kMeshFolders = {"", "off", "shapes", "meshes", "registrations",
-                                     "training/registrations"};
+constexpr std::array kMeshFolders = {"",       "off",           "shapes",
+                                     "meshes", "registrations", "training/registrations"};
 constexpr std::array kMeshEndings = {".off", ".obj", ".ply", ".stl", ".vert"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

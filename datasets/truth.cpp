@@ -8,6 +8,7 @@
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/datasets/detail/word_lines.h"
+#include "timbre/datasets/random.h"
 
 namespace timbre {
 namespace {
@@ -176,6 +177,22 @@ Truth mirrored(const Truth& truth, const Truth& symmetry, std::int64_t vertices)
   Truth result;
   result.partial = truth.partial;
   add_known_rows(result, truth.source, target);
+  return result;
+}
+
+Truth sampled(const Truth& truth, std::size_t count) {
+  if (truth.source.size() <= count) return truth;
+  Random random("truth", {1});
+  std::vector<std::int32_t> rows =
+      random.permutation(static_cast<std::int32_t>(truth.source.size()));
+  rows.resize(count);
+  std::sort(rows.begin(), rows.end());
+  Truth result;
+  result.partial = truth.partial;
+  for (const std::int32_t row : rows) {
+    result.source.push_back(truth.source[static_cast<std::size_t>(row)]);
+    result.target.push_back(truth.target[static_cast<std::size_t>(row)]);
+  }
   return result;
 }
 

@@ -49,6 +49,9 @@ struct Truth {
 /// @param vertices  of the target
 [[nodiscard]] Truth mirrored(const Truth& truth, const Truth& symmetry, std::int64_t vertices);
 
+/// A fixed random choice of `count` rows, in their order; all if there are not more.
+[[nodiscard]] Truth sampled(const Truth& truth, std::size_t count);
+
 /// How the truth of maps from a shape is given: "vts", "map" or "numbers".
 [[nodiscard]] const char* truth_form(const ShapeSet& set, const SetShape& shape);
 

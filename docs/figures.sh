@@ -17,6 +17,6 @@ done
 printf '\nMaps of timbre match, first 40 pairs:\n'
 "$timbre" eval match remeshed -n 40 -o tensor.jsonl
 printf '\nDescriptors and ZoomOut alone, the same pairs:\n'
-"$timbre" eval match remeshed -n 40 -o functional.jsonl --method functional
+"$timbre" eval match remeshed -n 40 -o functional.jsonl --method functional --samples 500
 printf '\nSymmetries of all shapes:\n'
 "$timbre" eval match remeshed --kind sym -o symmetry.jsonl

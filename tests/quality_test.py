@@ -41,7 +41,7 @@ with tempfile.TemporaryDirectory() as folder:
     judge("maps found", maps["found"], at_least=1.0)
     judge("mean error of maps", maps["mean_error"], at_most=2.5)
     judge("maps with sides exchanged", maps["flipped"], at_most=0.0)
-    plain = run("eval", "match", shapes, "-n", "6", "--method", "functional")
+    plain = run("eval", "match", shapes, "-n", "6", "--method", "functional", "--samples", "500")
     judge("sides exchanged by descriptors alone", plain["flipped"], at_least=0.1)
     mirrors = run("eval", "match", shapes, "-n", "2", "--kind", "sym")
     judge("symmetries found", mirrors["mesh_rate"], at_least=1.0)

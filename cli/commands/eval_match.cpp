@@ -160,6 +160,7 @@ nlohmann::json parameters(const Arguments& args) {
           {"maps", args.judge.maps.empty() ? nlohmann::json() : nlohmann::json(args.judge.maps)},
           {"method", args.judge.method == MatchMethod::tensor ? "tensor" : "functional"},
           {"count", args.judge.count},
+          {"samples", args.judge.samples},
           {"version", version_text()}};
 }
 
@@ -256,6 +257,11 @@ void add_eval_match(CLI::App& eval, Context& context) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, GeodesicKind>{
           {"exact", GeodesicKind::exact}, {"graph", GeodesicKind::graph}}))
       ->default_str("exact");
+  command
+      .add_option("--samples", args->judge.samples,
+                  "judge so many rows of the truth, chosen once and for all; 0: all")
+      ->check(CLI::Range(0, 1000000000))
+      ->capture_default_str();
   command.add_option("--maps", args->judge.maps,
                      "judge SOURCE_TARGET.txt (sym: MESH.txt) of this folder instead of computing");
   command.add_option("--save-maps", args->judge.save,

@@ -106,10 +106,12 @@ Truth MapJudge::truth_of(const ShapeSet& set, const SetShape& a, const TriangleM
   return map_truth(set, a, A.vertices.rows(), b, B.vertices.rows());
 }
 
-void MapJudge::compare(const std::vector<std::int32_t>& map, const Truth& truth,
+void MapJudge::compare(const std::vector<std::int32_t>& map, const Truth& known,
                        const ShapeSet& set, const SetShape& target, const TriangleMesh& B,
                        Judged& judged) const {
   const ErrorScale scale(B, options_.geodesic);
+  const Truth truth =
+      options_.samples == 0 ? known : sampled(known, static_cast<std::size_t>(options_.samples));
   judged.score = score_map(map, truth, scale, context_.threads);
   if (options_.kind != TruthKind::map || !has_symmetry_truth(set, target)) return;
   const Truth opposite =

@@ -23,6 +23,7 @@ struct JudgeOptions {
   MatchMethod method = MatchMethod::tensor;
   GeodesicKind geodesic = GeodesicKind::exact;
   int count = 200;    ///< eigenfunctions
+  int samples = 0;    ///< rows of the truth that are judged; 0: all
   std::string maps;   ///< folder of maps to judge; empty: compute them
   std::string truth;  ///< of one map; empty: what lies beside the meshes
   std::string save;   ///< folder for the maps that are computed; empty: they are not kept
@@ -56,7 +57,7 @@ class MapJudge {
   [[nodiscard]] TriangleMesh load(const std::string& file) const;
   [[nodiscard]] Truth truth_of(const ShapeSet& set, const SetShape& a, const TriangleMesh& A,
                                const SetShape& b, const TriangleMesh& B) const;
-  void compare(const std::vector<std::int32_t>& map, const Truth& truth, const ShapeSet& set,
+  void compare(const std::vector<std::int32_t>& map, const Truth& known, const ShapeSet& set,
                const SetShape& target, const TriangleMesh& B, Judged& judged) const;
   [[nodiscard]] std::string map_file(const std::string& folder, const std::string& source,
                                      const std::string& target) const;

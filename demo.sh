@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a bare Debian machine to a database, a query and a map: ./demo.sh
+# From a bare Debian machine to a page worth looking at, demo/report.html: ./demo.sh
 set -euo pipefail
 cd "$(dirname "$0")"
 . .ci/prepare.sh
@@ -17,38 +17,43 @@ run() {
   "$timbre" "$@"
 }
 
-say "1. Shapes: bodies with joints, each in several poses, vertices shuffled"
-run dataset make creatures -o demo/creatures --sets remeshed --poses 6 --quiet
-ls $shapes | head -n 4
-run info $shapes/person0.ply
+say "1. Shapes: six kinds of creatures, each individual in a pose and in triangles of its own"
+run dataset make creatures -o demo/creatures --sets remeshed --poses 4 --resolution 4500 \
+  --species person,gorilla,horse,cat,ostrich,lizard --quiet
+run info $shapes/person1.ply
 
 say "2. A database of what they sound like"
-run db add demo/shapes.timbre $shapes/*.ply --labels $shapes/labels.txt | tail -n 3
-run db verify demo/shapes.timbre
+run db add demo/creatures.timbre $shapes/*.ply --labels $shapes/labels.txt | tail -n 3
+run db verify demo/creatures.timbre
 
 say "3. What else looks like this one, in any pose?"
-run query demo/shapes.timbre --stored person0 -n 6
-run eval retrieval demo/shapes.timbre
+run query demo/creatures.timbre --stored horse1 -n 5
+run eval retrieval demo/creatures.timbre
 
 say "4. Which point of one is which point of the other?"
-run match $shapes/person0.ply $shapes/person3.ply -o demo/person0_to_person3.txt
-run symmetry $shapes/person0.ply -o demo/person0_mirror.txt
+run match $shapes/person1.ply $shapes/person2.ply -o demo/person1_to_person2.txt
+run eval match $shapes -n 2 -o demo/maps.jsonl --save-maps demo/maps
+run eval match $shapes --kind sym -n 1 -o demo/mirrors.jsonl --save-maps demo/mirrors
+
+say "5. One page of all that"
+run report demo/creatures.timbre -o demo/report.html --set $shapes --matches demo/maps.jsonl \
+  --maps demo/maps --symmetries demo/mirrors.jsonl --symmetry-maps demo/mirrors
 
 cat <<'END'
 
 What happened
   timbre made a folder of creatures, computed the lowest eigenvalues of the
   Laplace-Beltrami operator of each (what the shape "sounds like"), stored them in
-  one file, ranked the others by likeness to one of them, and mapped one pose onto
-  another, vertex by vertex.
+  one file, ranked the others by likeness to one of them, mapped one individual onto
+  another, vertex by vertex, and measured how right all that is against the truth.
 Where it is
-  demo/shapes/                  meshes, labels.txt, ground truth
-  demo/shapes.timbre            the database
-  demo/person0_to_person3.txt   line i: the vertex of person3 for vertex i of person0
-  demo/person0_mirror.txt       line i: the mirror image of vertex i
+  demo/report.html              look here first, in any browser
+  demo/creatures/remeshed/      meshes, labels.txt, truth
+  demo/creatures.timbre         the database
+  demo/person1_to_person2.txt   line i: the vertex of person2 for vertex i of person1
 What to try next, with your own meshes
   build/release/cli/timbre info MESH
   build/release/cli/timbre db add my.timbre FOLDER/*.ply
-  build/release/cli/timbre query my.timbre MESH
+  build/release/cli/timbre report my.timbre -o my.html
   build/release/cli/timbre match A.ply B.ply -o map.txt
 END

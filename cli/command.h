@@ -86,6 +86,7 @@ void add_info(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
 void add_query(CLI::App& timbre, Context& context);
 void add_render(CLI::App& timbre, Context& context);
+void add_report(CLI::App& timbre, Context& context);
 void add_signature(CLI::App& timbre, Context& context);
 void add_spectrum(CLI::App& timbre, Context& context);
 void add_symmetry(CLI::App& timbre, Context& context);

@@ -50,6 +50,7 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   add_eval(app, context);
   add_dataset(app, context);
   add_render(app, context);
+  add_report(app, context);
 }
 
 // Edits (insert, delete, replace, one each) from one word to another.

@@ -19,6 +19,17 @@ void add_operator_options(CLI::App& command, OperatorOptions& options) {
       ->default_str(to_word(options.mass));
 }
 
+void add_up_option(CLI::App& command, UpAxis& up) {
+  command.add_option("--up", up, "axis that points up: x, y, z, -x, -y or -z")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, UpAxis>{{"x", UpAxis::x},
+                                                                        {"y", UpAxis::y},
+                                                                        {"z", UpAxis::z},
+                                                                        {"-x", UpAxis::minus_x},
+                                                                        {"-y", UpAxis::minus_y},
+                                                                        {"-z", UpAxis::minus_z}}))
+      ->default_str("y");
+}
+
 CLI::Validator number_between(double low, double high) {
   const std::string range = to_text(low) + " to " + to_text(high);
   const auto complaint = [low, high, range](const std::string& text) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "timbre/analysis/operators/operator.h"
+#include "timbre/cli/render/camera.h"
 
 namespace timbre::cli {
 
@@ -11,6 +12,9 @@ namespace timbre::cli {
 
 /// --operator and --mass.
 void add_operator_options(CLI::App& command, OperatorOptions& options);
+
+/// --up: which axis of the meshes points up in pictures.
+void add_up_option(CLI::App& command, UpAxis& up);
 
 /// A number in [low, high], which messages show as people write them.
 [[nodiscard]] CLI::Validator number_between(double low, double high);

@@ -25,7 +25,6 @@ struct Arguments {
   std::vector<std::string> views = {"three-quarter"};
   View free_view;
   bool free = false;  ///< --azimuth or --elevation instead of --view
-  std::string up = "y";
   std::string background = "transparent";
   RenderOptions options;
 
@@ -42,13 +41,6 @@ const std::map<std::string, View>& named_views() {
       {"left", {270.0, 0.0}},         {"top", {0.0, 90.0}},   {"bottom", {0.0, -90.0}},
       {"three-quarter", {38.0, 20.0}}};
   return kViews;
-}
-
-const std::map<std::string, UpAxis>& up_axes() {
-  static const std::map<std::string, UpAxis> kAxes = {
-      {"x", UpAxis::x},        {"y", UpAxis::y},        {"z", UpAxis::z},
-      {"-x", UpAxis::minus_x}, {"-y", UpAxis::minus_y}, {"-z", UpAxis::minus_z}};
-  return kAxes;
 }
 
 Error bad_option(const std::string& option, const std::string& cause) {
@@ -161,7 +153,6 @@ nlohmann::json to_json(const ShownValues& values) {
 
 void run(Arguments& args, const Context& context) {
   set_size(args.size, args.options);
-  args.options.up = up_axes().at(args.up);
   args.options.background = parse_background(args.background);
   args.options.threads = context.threads;
   args.options.progress = context.progress();
@@ -205,9 +196,7 @@ void add_camera_options(CLI::App& command, Arguments& args) {
                   "degrees above the horizon, instead of --view")
       ->check(number_between(-90.0, 90.0))
       ->excludes(view);
-  command.add_option("--up", args.up, "axis that points up: x, y, z, -x, -y or -z")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
-      ->capture_default_str();
+  add_up_option(command, args.options.up);
   command.add_option("--background", args.background, "transparent, white, black or #rrggbb")
       ->capture_default_str();
 }

@@ -1,0 +1,12 @@
+# Writes OUTPUT, a source that defines a function for each NAME=FILE of TEXTS.
+set(source "#include \"timbre/cli/report/embedded_text.h\"\n\nnamespace timbre::cli {\n")
+foreach(entry IN LISTS TEXTS)
+  string(FIND "${entry}" "=" cut)
+  string(SUBSTRING "${entry}" 0 ${cut} name)
+  math(EXPR start "${cut} + 1")
+  string(SUBSTRING "${entry}" ${start} -1 file)
+  file(READ "${file}" text)
+  string(APPEND source "\nstd::string_view ${name}() {\n  return R\"timbre(${text})timbre\";\n}\n")
+endforeach()
+string(APPEND source "\n}  // namespace timbre::cli\n")
+file(WRITE "${OUTPUT}" "${source}")

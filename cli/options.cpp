@@ -1,7 +1,6 @@
 #include "timbre/cli/options.h"
 
 #include <filesystem>
-#include <map>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
@@ -9,14 +8,11 @@
 namespace timbre::cli {
 
 void add_operator_options(CLI::App& command, OperatorOptions& options) {
-  command.add_option("--operator", options.kind, "the Laplacian: cotan")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, OperatorKind>{{"cotan", OperatorKind::cotan}}))
-      ->default_str(to_word(options.kind));
-  command.add_option("--mass", options.mass, "mass matrix: lumped or consistent")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, MassKind>{
-          {"lumped", MassKind::lumped}, {"consistent", MassKind::consistent}}))
-      ->default_str(to_word(options.mass));
+  add_word_option(command, "--operator", options.kind, {{"cotan", OperatorKind::cotan}},
+                  "the Laplacian");
+  add_word_option(command, "--mass", options.mass,
+                  {{"lumped", MassKind::lumped}, {"consistent", MassKind::consistent}},
+                  "mass matrix");
 }
 
 void add_up_option(CLI::App& command, UpAxis& up) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "timbre/analysis/operators/operator.h"
 #include "timbre/cli/render/camera.h"
@@ -9,6 +11,25 @@
 namespace timbre::cli {
 
 // Options that mean the same in every command.
+
+/// An option whose values are words; without it `value` stays what it is, and --help shows that.
+/// (CLI11's own transformers print the numbers behind the words, those of one byte as
+/// characters.)
+template <typename Enum>
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, Enum& value,
+                             const std::map<std::string, Enum>& words, const std::string& about) {
+  std::vector<std::string> known;
+  std::string standard;
+  for (const auto& [word, meaning] : words) {
+    known.push_back(word);
+    if (meaning == value) standard = word;
+  }
+  return command
+      .add_option_function<std::string>(
+          name, [&value, words](const std::string& word) { value = words.at(word); }, about)
+      ->check(CLI::IsMember(known))
+      ->default_str(standard);
+}
 
 /// --operator and --mass.
 void add_operator_options(CLI::App& command, OperatorOptions& options);

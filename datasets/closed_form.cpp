@@ -4,16 +4,26 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <string>
+
+#include "timbre/analysis/core/error.h"
 
 namespace timbre {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+void require_count(int count) {
+  if (count >= 1) return;
+  throw Error(ErrorKind::bad_request, "", "count",
+              "asks for " + std::to_string(count) + " eigenvalues; at least 1 is needed");
+}
+
 // The lowest sums a(i) + b(j), both ascending from i = j = 0, a(i) `times(i)` times.
 std::vector<double> lowest_sums(const std::function<double(int)>& a,
                                 const std::function<int(int)>& times,
                                 const std::function<double(int)>& b, int count) {
+  require_count(count);
   std::vector<double> values;
   // The first `count` of either alone bound what is needed of both.
   const double bound = std::min(a(count), b(count));
@@ -46,6 +56,7 @@ double zero_between(int order, double low, double high) {
 }  // namespace
 
 std::vector<double> sphere_eigenvalues(int count) {
+  require_count(count);
   std::vector<double> values;
   for (int l = 0; static_cast<int>(values.size()) < count; ++l) {
     values.insert(values.end(), static_cast<std::size_t>(2 * l + 1), l * (l + 1.0));
@@ -60,6 +71,7 @@ std::vector<double> rectangle_eigenvalues(double width, double height, int count
 }
 
 std::vector<double> disk_eigenvalues(int count) {
+  require_count(count);
   // Weyl's law with its boundary term puts `count` values below this, and some more.
   const double most = std::sqrt(4.0 * count) + 4.0;
   constexpr double kStep = 0.1;  // zeros of one order lie about pi apart
@@ -82,6 +94,7 @@ std::vector<double> cylinder_eigenvalues(double height, int count) {
 }
 
 std::vector<double> flat_torus_eigenvalues(int count) {
+  require_count(count);
   std::vector<double> values;
   // Values up to 4 pi^2 r^2 number about pi r^2.
   const int r = static_cast<int>(std::sqrt(count / kPi)) + 3;

@@ -6,6 +6,7 @@ namespace timbre {
 
 // The lowest `count` eigenvalues of the surfaces of `analytic.h`, each as often as it occurs,
 // in ascending order. Open surfaces have Neumann boundaries. Units: 1 / length^2.
+// Less than 1 throws Error (bad_request).
 
 /// l (l + 1), each 2 l + 1 times.
 [[nodiscard]] std::vector<double> sphere_eigenvalues(int count);

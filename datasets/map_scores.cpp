@@ -40,11 +40,34 @@ std::vector<Group> group_by_target(std::span<const std::int32_t> from,
   return groups;
 }
 
+void require_vertices(std::span<const std::int32_t> from, std::span<const std::int32_t> to,
+                      std::int64_t vertices) {
+  if (from.size() != to.size()) {
+    throw Error(ErrorKind::bad_request, "", "distances",
+                "want as many ends as starts, not " + std::to_string(to.size()) + " and " +
+                    std::to_string(from.size()));
+  }
+  for (const auto& list : {from, to}) {
+    for (const std::int32_t v : list) {
+      if (v >= 0 && v < vertices) continue;
+      throw Error(ErrorKind::bad_request, "", "distances",
+                  std::to_string(v) + " is no vertex; the mesh has " + std::to_string(vertices) +
+                      ", from 0");
+    }
+  }
+}
+
+double count_below(const std::vector<double>& errors, double bar) {
+  return static_cast<double>(
+      std::count_if(errors.begin(), errors.end(), [&](double one) { return one <= bar; }));
+}
+
 }  // namespace
 
 struct ErrorScale::Impl {
   GeodesicKind kind = GeodesicKind::exact;
   double unit = 1.0;  // hundredths of the square root of the area
+  std::int64_t vertices = 0;
   GeodesicMesh mesh;
 
   [[nodiscard]] std::vector<double> measure(ExactGeodesics& exact, const Group& group) const {
@@ -65,6 +88,7 @@ ErrorScale::ErrorScale(const TriangleMesh& mesh, GeodesicKind kind)
     throw Error(ErrorKind::bad_input, "", "area", "is 0 or beyond a double's range");
   }
   impl_->kind = kind;
+  impl_->vertices = mesh.vertices.rows();
   impl_->unit = std::sqrt(area) / 100.0;
   impl_->mesh = make_geodesic_mesh(mesh);
 }
@@ -76,6 +100,7 @@ ErrorScale& ErrorScale::operator=(ErrorScale&&) noexcept = default;
 std::vector<double> ErrorScale::between(std::span<const std::int32_t> from,
                                         std::span<const std::int32_t> to, int threads) const {
   constexpr std::size_t kBlock = 64;  // groups that share a workspace
+  require_vertices(from, to, impl_->vertices);
   const std::vector<Group> groups = group_by_target(from, to);
   std::vector<double> result(from.size());
   const auto blocks = static_cast<std::int64_t>((groups.size() + kBlock - 1) / kBlock);
@@ -94,9 +119,7 @@ std::vector<double> ErrorScale::between(std::span<const std::int32_t> from,
 }
 
 double MapScore::share_below(double error) const {
-  const auto right =
-      std::count_if(errors.begin(), errors.end(), [&](double one) { return one <= error; });
-  return rows == 0 ? 0.0 : static_cast<double>(right) / static_cast<double>(rows);
+  return rows == 0 ? 0.0 : count_below(errors, error) / static_cast<double>(rows);
 }
 
 MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
@@ -122,7 +145,7 @@ MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
   score.mean_error =
       image.empty() ? std::numeric_limits<double>::quiet_NaN()
                     : std::accumulate(score.errors.begin(), score.errors.end(), 0.0) / answered;
-  if (!image.empty()) score.below5 = score.share_below(kFound) / score.matched;
+  if (!image.empty()) score.below5 = count_below(score.errors, kFound) / answered;
   score.found = score.mean_error < kFound && score.matched >= (truth.partial ? 0.9 : 1.0);
   return score;
 }

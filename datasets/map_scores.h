@@ -27,6 +27,7 @@ class ErrorScale {
 
   /// The distance from each `from` to its `to`; 100 between components.
   /// @param threads  0: all cores; the result does not depend on it
+  /// @throws Error  bad_request for what is no vertex
   [[nodiscard]] std::vector<double> between(std::span<const std::int32_t> from,
                                             std::span<const std::int32_t> to, int threads) const;
 
@@ -50,7 +51,7 @@ struct MapScore {
 };
 
 /// @param map  an image for each vertex of the source, -1 = unmatched
-/// @throws Error  bad_request if the map is too short for the truth
+/// @throws Error  bad_request if the map is too short for the truth or leads to no vertex
 /// @see Kim, Lipman and Funkhouser 2011, section 8 (curves of errors)
 [[nodiscard]] MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
                                  const ErrorScale& scale, int threads);

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <system_error>
+#include <unordered_map>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
@@ -24,13 +28,18 @@ constexpr std::array kMeshEndings = {".off", ".obj", ".ply", ".stl", ".vert"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+std::string without_gz(const std::string& name) {
+  return name.ends_with(".gz") ? name.substr(0, name.size() - 3) : name;
+}
+
 bool is_mesh_name(const std::string& name) {
-  const std::string plain = name.ends_with(".gz") ? name.substr(0, name.size() - 3) : name;
+  if (name.starts_with('.') || name.ends_with(".vert.gz")) return false;
+  std::string plain = without_gz(name);
+  std::transform(plain.begin(), plain.end(), plain.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return std::any_of(kMeshEndings.begin(), kMeshEndings.end(),
                      [&](const char* ending) { return plain.ends_with(ending); });
 }
-
-std::string stem_of(const std::string& name) { return name.substr(0, name.find('.')); }
 
 // cat2 before cat10.
 bool comes_before(const std::string& a, const std::string& b) {
@@ -55,11 +64,14 @@ bool comes_before(const std::string& a, const std::string& b) {
   return a.size() != b.size() ? a.size() < b.size() : a < b;
 }
 
+// Of files; what is a folder or a device is no mesh, whatever its name.
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code failure;
   for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
        entry.increment(failure)) {
+    std::error_code ignored;
+    if (!entry->is_regular_file(ignored)) continue;
     names.push_back(entry->path().filename().string());
   }
   if (failure) throw Error(ErrorKind::io, folder.string(), "", failure.message());
@@ -122,7 +134,7 @@ std::optional<std::string> label_by_name(SetLayout layout, const std::string& st
 bool label_by_names(ShapeSet& set, SetLayout layout) {
   std::vector<std::string> labels;
   for (const SetShape& shape : set.shapes) {
-    const std::optional<std::string> label = label_by_name(layout, stem_of(shape.name));
+    const std::optional<std::string> label = label_by_name(layout, shape_stem(shape.name));
     if (!label) return false;
     labels.push_back(*label);
   }
@@ -131,55 +143,80 @@ bool label_by_names(ShapeSet& set, SetLayout layout) {
   return true;
 }
 
+// Shapes by the names that lists have for them.
+class Names {
+ public:
+  explicit Names(const ShapeSet& set) : set_(set) {
+    for (std::size_t i = 0; i < set.shapes.size(); ++i) {
+      by_stem_.try_emplace(shape_stem(set.shapes[i].name), i);
+      by_name_.emplace(set.shapes[i].name, i);
+    }
+  }
+
+  [[nodiscard]] std::size_t find(const detail::WordLines& line, std::size_t column) const {
+    const std::string word = line.word(column);
+    for (const auto* names : {&by_name_, &by_stem_}) {
+      const auto shape = names->find(word);
+      if (shape != names->end()) return shape->second;
+    }
+    const bool is_part =
+        std::any_of(set_.shapes.begin(), set_.shapes.end(), [&](const SetShape& shape) {
+          return shape.name.starts_with(word) && shape.name.find_first_of(" \t,") == word.size();
+        });
+    line.refuse(
+        "'" + word + "' is not in the folder" +
+        (is_part ? "; lists cannot hold names with blanks or commas: rename the file" : ""));
+  }
+
+ private:
+  const ShapeSet& set_;
+  std::unordered_map<std::string, std::size_t> by_name_, by_stem_;
+};
+
 // FILE LABEL ...; `?` is no label.
 void label_by_list(ShapeSet& set, const std::string& list) {
-  for (const detail::WordLine& line : detail::read_word_lines(list)) {
-    const std::string place = "line " + std::to_string(line.number);
-    const auto shape = std::find_if(set.shapes.begin(), set.shapes.end(), [&](const SetShape& one) {
-      return one.name == line.words[0] || stem_of(one.name) == line.words[0];
-    });
-    if (shape == set.shapes.end()) {
-      throw Error(ErrorKind::bad_input, list, place, line.words[0] + " is not in the folder");
+  const Names names(set);
+  std::vector<bool> is_labelled(set.shapes.size(), false);
+  for (detail::WordLines line(list); line.next();) {
+    const std::size_t i = names.find(line, 0);
+    if (line.words().size() < 2) line.refuse("has no label after the file");
+    const std::string label = line.words()[1] == "?" ? "" : line.word(1);
+    if (is_labelled[i] && set.shapes[i].label != label) {
+      line.refuse("labels " + set.shapes[i].name + " a second time");
     }
-    if (line.words.size() < 2) {
-      throw Error(ErrorKind::bad_input, list, place, "has no label after the file");
-    }
-    shape->label = line.words[1] == "?" ? "" : line.words[1];
+    set.shapes[i].label = label;
+    is_labelled[i] = true;
   }
   set.layout = SetLayout::listed;
 }
 
 // PSB 1 / classes models / then of each class: name parent count, and the numbers of its models.
 void label_by_cla(ShapeSet& set, const std::string& list) {
-  const std::vector<detail::WordLine> lines = detail::read_word_lines(list);
   std::map<std::string, std::string> label_of;
   std::string label;
   std::int64_t left = 0;
-  for (std::size_t i = 2; i < lines.size(); ++i) {
-    const std::vector<std::string>& words = lines[i].words;
-    const std::string place = "line " + std::to_string(lines[i].number);
+  detail::WordLines line(list);
+  const bool is_begun = line.next() && line.words()[0] == "PSB" && line.next();
+  while (is_begun && line.next()) {
     if (left > 0) {
-      if (words.size() != 1 || !is_number(words[0])) {
-        throw Error(ErrorKind::bad_input, list, place, "the number of a model is wanted");
+      if (line.words().size() != 1 || !is_number(line.word(0))) {
+        line.refuse("the number of a model is wanted");
       }
-      label_of[words[0]] = label;
+      label_of[line.word(0)] = label;
       --left;
       continue;
     }
     const std::optional<std::int64_t> count =
-        words.size() == 3 ? parse_integer(words[2]) : std::optional<std::int64_t>();
-    if (!count || *count < 0) {
-      throw Error(ErrorKind::bad_input, list, place, "a class (name parent count) is wanted");
-    }
-    label = words[0];
+        line.words().size() == 3 ? parse_integer(line.words()[2]) : std::optional<std::int64_t>();
+    if (!count || *count < 0) line.refuse("a class (name parent count) is wanted");
+    label = line.word(0);
     left = *count;
   }
-  if (lines.size() < 2 || lines[0].words[0] != "PSB" || left > 0) {
+  if (!is_begun || left > 0) {
     throw Error(ErrorKind::bad_input, list, "", "is no whole PSB class file");
   }
   for (SetShape& shape : set.shapes) {
-    const std::string stem = stem_of(shape.name);
-    const auto known = label_of.find(stem.substr(stem.find_first_of("0123456789")));
+    const auto known = label_of.find(shape_stem(shape.name).substr(1));  // T0
     if (known != label_of.end()) shape.label = known->second;
   }
   set.layout = SetLayout::cla;
@@ -192,7 +229,7 @@ void label_shapes(ShapeSet& set) {
     if (fs::exists(list, failure)) return label_by_list(set, list.string());
   }
   const bool numbered = std::all_of(set.shapes.begin(), set.shapes.end(), [](const SetShape& one) {
-    return number_after(stem_of(one.name), "T").has_value();
+    return number_after(shape_stem(one.name), "T").has_value();
   });
   for (const std::string& name : names_in(set.folder)) {
     if (numbered && name.ends_with(".cla")) {
@@ -206,79 +243,143 @@ void label_shapes(ShapeSet& set) {
 }
 
 void read_pairs(ShapeSet& set, const std::string& list) {
+  const Names names(set);
+  std::set<std::pair<std::size_t, std::size_t>> seen;
   set.pairs_listed = true;
-  for (const detail::WordLine& line : detail::read_word_lines(list)) {
-    const std::string place = "line " + std::to_string(line.number);
-    if (line.words.size() != 2) {
-      throw Error(ErrorKind::bad_input, list, place, "two files are wanted");
-    }
-    for (const std::string& word : line.words) {
-      const bool known = std::any_of(set.shapes.begin(), set.shapes.end(),
-                                     [&](const SetShape& shape) { return shape.name == word; });
-      if (!known) throw Error(ErrorKind::bad_input, list, place, word + " is not in the folder");
-    }
-    set.pairs.emplace_back(line.words[0], line.words[1]);
+  for (detail::WordLines line(list); line.next();) {
+    if (line.words().size() != 2) line.refuse("two files are wanted");
+    const std::size_t a = names.find(line, 0);
+    const std::size_t b = names.find(line, 1);
+    if (!seen.emplace(a, b).second) line.refuse("names this pair a second time");
+    set.pairs.emplace_back(set.shapes[a].name, set.shapes[b].name);
   }
 }
 
-// All registrations of FAUST correspond, whoever the subject is.
-void make_pairs(ShapeSet& set) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (std::size_t a = 0; a < set.shapes.size(); ++a) {
-    for (std::size_t b = a + 1; b < set.shapes.size(); ++b) {
-      if (set.shapes[a].label != set.shapes[b].label && set.layout != SetLayout::faust) continue;
-      pairs.emplace_back(set.shapes[a].name, set.shapes[b].name);
+// All registrations of FAUST correspond, whoever the subject is; where no name tells a label,
+// all may. Else a shape without label belongs to none.
+std::vector<std::vector<std::size_t>> groups_of(const ShapeSet& set) {
+  const bool is_one = set.layout == SetLayout::faust || set.layout == SetLayout::plain;
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < set.shapes.size(); ++i) {
+    if (is_one || !set.shapes[i].label.empty()) {
+      groups[is_one ? "" : set.shapes[i].label].push_back(i);
     }
   }
+  std::vector<std::vector<std::size_t>> result;
+  for (const auto& [label, group] : groups) result.push_back(group);
+  return result;
+}
+
+// `wanted` of the numbers below `total`, in random order.
+std::vector<std::int64_t> draw(std::int64_t total, std::int64_t wanted) {
   Random random("pairs", {1});
-  for (const std::int32_t i : random.permutation(static_cast<std::int32_t>(pairs.size()))) {
-    set.pairs.push_back(pairs[static_cast<std::size_t>(i)]);
+  std::vector<std::int64_t> drawn;
+  if (total <= wanted) {
+    for (const std::int32_t i : random.permutation(static_cast<std::int32_t>(total))) {
+      drawn.push_back(i);
+    }
+    return drawn;
+  }
+  std::set<std::int64_t> seen;
+  while (std::ssize(drawn) < wanted) {
+    const auto number = static_cast<std::int64_t>(random.uniform(0.0, static_cast<double>(total)));
+    if (seen.insert(number).second) drawn.push_back(number);
+  }
+  return drawn;
+}
+
+// Numbers the pairs without making them: a large folder has more than memory holds.
+void make_pairs(ShapeSet& set) {
+  struct First {
+    std::int64_t start;  // pairs before those that begin with this shape
+    const std::vector<std::size_t>* group;
+    std::size_t at;
+  };
+  const std::vector<std::vector<std::size_t>> groups = groups_of(set);
+  std::vector<First> firsts;
+  std::int64_t total = 0;
+  for (const std::vector<std::size_t>& group : groups) {
+    for (std::size_t at = 0; at < group.size(); ++at) {
+      firsts.push_back({total, &group, at});
+      total += std::ssize(group) - 1 - static_cast<std::int64_t>(at);
+    }
+  }
+  for (const std::int64_t number : draw(total, kMostPairs)) {
+    const auto after = std::upper_bound(
+        firsts.begin(), firsts.end(), number,
+        [](std::int64_t wanted, const First& first) { return wanted < first.start; });
+    const First& first = *std::prev(after);
+    const std::size_t other = first.at + 1 + static_cast<std::size_t>(number - first.start);
+    set.pairs.emplace_back(set.shapes[(*first.group)[first.at]].name,
+                           set.shapes[(*first.group)[other]].name);
   }
 }
 
-double number_in(const detail::WordLine& line, std::size_t column, const std::string& file) {
-  const std::optional<double> value = parse_double(line.words[column]);
-  if (value) return *value;
-  throw Error(ErrorKind::bad_input, file, "line " + std::to_string(line.number),
-              "'" + line.words[column] + "' is not a number");
+double number_in(const detail::WordLines& line, std::size_t column) {
+  const std::optional<double> value = parse_double(line.words()[column]);
+  if (!value) line.refuse("'" + line.word(column) + "' is not a number");
+  return *value;
 }
 
-// Three numbers a line.
-Points read_triples(const std::string& file) {
-  const std::vector<detail::WordLine> lines = detail::read_word_lines(file);
-  Points rows(static_cast<Eigen::Index>(lines.size()), 3);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (lines[i].words.size() != 3) {
-      throw Error(ErrorKind::bad_input, file, "line " + std::to_string(lines[i].number),
-                  "three numbers are wanted");
-    }
+// A line of three, or an end.
+bool next_triple(detail::WordLines& line) {
+  if (!line.next()) return false;
+  if (line.words().size() != 3) line.refuse("three numbers are wanted");
+  return true;
+}
+
+Points read_points(const std::string& file) {
+  std::vector<double> values;
+  for (detail::WordLines line(file); next_triple(line);) {
+    for (std::size_t c = 0; c < 3; ++c) values.push_back(number_in(line, c));
+  }
+  if (values.empty()) throw Error(ErrorKind::bad_input, file, "", "holds no point");
+  return Eigen::Map<const Points>(values.data(), std::ssize(values) / 3, 3);
+}
+
+Faces read_triangles(const std::string& file, std::int64_t vertices) {
+  std::vector<std::int32_t> corners;
+  for (detail::WordLines line(file); next_triple(line);) {
     for (std::size_t c = 0; c < 3; ++c) {
-      rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) =
-          number_in(lines[i], c, file);
+      // Some copies write 1.0.
+      const double v = number_in(line, c);
+      if (!(v >= 1.0 && v <= static_cast<double>(vertices)) || v != std::floor(v)) {
+        line.refuse("'" + line.word(c) + "' is no vertex; they count from 1 to " +
+                    std::to_string(vertices));
+      }
+      corners.push_back(static_cast<std::int32_t>(v) - 1);
     }
   }
-  return rows;
+  return Eigen::Map<const Faces>(corners.data(), std::ssize(corners) / 3, 3);
 }
 
-MeshFile read_vert_tri(const std::string& file) {
+MeshFile read_vert_tri(const std::string& file, const ReadOptions& options) {
   const std::string triangles = fs::path(file).replace_extension(".tri").string();
+  for (const std::string& part : {file, triangles}) {
+    std::error_code failure;
+    if (fs::file_size(part, failure) > options.size_limit && !failure) {
+      throw Error(ErrorKind::bad_input, part, "size",
+                  "larger than the limit of " + std::to_string(options.size_limit) + " bytes");
+    }
+  }
   MeshFile result;
   result.format = "vert";
-  result.mesh.vertices = read_triples(file);
-  const Points corners = read_triples(triangles);
-  const auto n = static_cast<double>(result.mesh.vertices.rows());
-  result.mesh.faces.resize(corners.rows(), 3);
-  for (Eigen::Index f = 0; f < corners.rows(); ++f) {
-    for (Eigen::Index c = 0; c < 3; ++c) {
-      const double v = corners(f, c);
-      if (!(v >= 1.0 && v <= n) || v != static_cast<double>(static_cast<std::int32_t>(v))) {
-        throw Error(ErrorKind::bad_input, triangles, "triangle " + std::to_string(f),
-                    to_text(v) + " is no vertex; they count from 1 to " + to_text(n));
-      }
-      result.mesh.faces(f, c) = static_cast<std::int32_t>(v) - 1;
-    }
+  result.mesh.vertices = read_points(file);
+  if (result.mesh.vertices.rows() > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(ErrorKind::bad_input, file, "", "holds more points than can be numbered");
   }
+  result.mesh.faces = read_triangles(triangles, result.mesh.vertices.rows());
   return result;
+}
+
+// The names in the first line of symmetry.txt.
+void read_symmetry_columns(ShapeSet& set) {
+  const std::string table = (fs::path(set.folder) / "symmetry.txt").string();
+  std::error_code failure;
+  if (!fs::exists(table, failure)) return;
+  detail::WordLines line(table);
+  if (!line.next()) throw Error(ErrorKind::bad_input, table, "", "is empty");
+  set.symmetry_columns.assign(line.words().begin(), line.words().end());
 }
 
 }  // namespace
@@ -302,6 +403,12 @@ const char* to_word(SetLayout layout) {
   }
 }
 
+std::string shape_stem(const std::string& name) {
+  const std::string plain = without_gz(name);
+  const std::size_t dot = plain.find_last_of('.');
+  return dot == 0 ? plain : plain.substr(0, dot);
+}
+
 ShapeSet read_shape_set(const std::string& folder) {
   ShapeSet set;
   set.folder = folder;
@@ -314,6 +421,7 @@ ShapeSet read_shape_set(const std::string& folder) {
   } else {
     make_pairs(set);
   }
+  read_symmetry_columns(set);
   return set;
 }
 
@@ -325,7 +433,7 @@ const SetShape& find_shape(const ShapeSet& set, const std::string& name) {
 }
 
 MeshFile read_set_mesh(const std::string& file, const ReadOptions& options) {
-  return file.ends_with(".vert") ? read_vert_tri(file) : read_mesh(file, options);
+  return file.ends_with(".vert") ? read_vert_tri(file, options) : read_mesh(file, options);
 }
 
 }  // namespace timbre

@@ -29,6 +29,9 @@ struct SetShape {
   std::string label;  ///< class or subject; empty if unknown
 };
 
+/// Pairs made for a set that lists none: of more, a fixed random choice.
+inline constexpr std::int64_t kMostPairs = 200000;
+
 /// A folder of shapes with truth, as public collections come.
 struct ShapeSet {
   std::string folder;
@@ -36,15 +39,21 @@ struct ShapeSet {
   SetLayout layout = SetLayout::plain;
   std::vector<SetShape> shapes;  ///< by name, numbers in order of size
   /// Base names, source and target: of pairs.txt; else all pairs of one label, or of all
-  /// where names give no label, in a fixed random order.
+  /// where names give no label, in a fixed random order, and no more than `kMostPairs`.
   std::vector<std::pair<std::string, std::string>> pairs;
-  bool pairs_listed = false;  ///< pairs.txt is there
+  bool pairs_listed = false;                  ///< pairs.txt is there
+  std::vector<std::string> symmetry_columns;  ///< names in the first line of symmetry.txt
 };
+
+/// A file's name without the ending of a mesh (`.ply`, `.ply.gz`): what `.vts` and `.map` files
+/// and maps are named by.
+[[nodiscard]] std::string shape_stem(const std::string& name);
 
 /// Recognises the layout of a folder.
 ///
 /// Meshes lie in the folder itself or in one of `off`, `shapes`, `meshes`, `registrations`
-/// and `training/registrations` in it; truth beside them or in `corres`.
+/// and `training/registrations` in it; truth beside them or in `corres`. Lists name a mesh by
+/// its file or by its stem; names with blanks or commas cannot stand in them.
 /// @throws Error  io if the folder cannot be read; bad_input if it holds no meshes, or for a
 ///                list that is malformed or names a file that is not there
 /// @see Bronstein et al. 2008 (TOSCA), Bogo et al. 2014 (FAUST), Anguelov et al. 2005 (SCAPE),

@@ -16,10 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string beside(const ShapeSet& set, const SetShape& shape, const char* ending) {
-  const std::string stem = shape.name.substr(0, shape.name.find_last_of('.'));
-  const std::string plain =
-      stem.substr(0, shape.name.ends_with(".gz") ? stem.find_last_of('.') : std::string::npos);
-  return (fs::path(set.truth_folder) / (plain + ending)).string();
+  return (fs::path(set.truth_folder) / (shape_stem(shape.name) + ending)).string();
 }
 
 bool exists(const std::string& path) {
@@ -27,16 +24,15 @@ bool exists(const std::string& path) {
   return fs::exists(path, failure);
 }
 
-std::int32_t vertex_from(const std::string& word, std::int32_t first, std::int64_t vertices,
-                         const std::string& path, const std::string& place) {
-  const std::optional<std::int64_t> number = parse_integer(word);
-  if (!number) throw Error(ErrorKind::bad_input, path, place, "'" + word + "' is no integer");
-  if (*number - first >= vertices) {
-    throw Error(ErrorKind::bad_input, path, place,
-                word + " is no vertex; the mesh has " + std::to_string(vertices) +
-                    (first == 0 ? ", from 0" : ", from 1"));
+std::int32_t vertex_from(const detail::WordLines& line, std::size_t column, std::int32_t first,
+                         std::int64_t vertices) {
+  const std::optional<std::int64_t> number = parse_integer(line.words()[column]);
+  if (!number) line.refuse("'" + line.word(column) + "' is no integer");
+  if (*number >= vertices + first) {
+    line.refuse(line.word(column) + " is no vertex; there are " + std::to_string(vertices) +
+                (first == 0 ? ", from 0" : ", from 1"));
   }
-  return static_cast<std::int32_t>(std::max<std::int64_t>(*number - first, -1));
+  return static_cast<std::int32_t>(std::max<std::int64_t>(*number, first - 1) - first);
 }
 
 void add_known_rows(Truth& truth, const std::vector<std::int32_t>& source,
@@ -53,34 +49,35 @@ void require_rows(const Truth& truth, const std::string& path) {
   throw Error(ErrorKind::bad_input, path, "", "tells nothing: no row is known on both sides");
 }
 
+// Of symmetry.txt; beyond the last where there is none for the shape.
+std::size_t column_of(const std::vector<std::string>& names, const SetShape& shape) {
+  if (names.size() == 1 && names[0] == "all") return 0;
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), shape.label) -
+                                  names.begin());
+}
+
 // The column of symmetry.txt for a shape: for each point of the template its image, -1 none.
 std::vector<std::int32_t> template_symmetry(const std::string& path, const SetShape& shape,
                                             std::size_t points) {
-  const std::vector<detail::WordLine> lines = detail::read_word_lines(path);
-  if (lines.empty()) throw Error(ErrorKind::bad_input, path, "", "is empty");
-  const std::vector<std::string>& names = lines[0].words;
-  auto column = std::find(names.begin(), names.end(), shape.label);
-  if (names.size() == 1 && names[0] == "all") column = names.begin();
-  if (column == names.end()) {
-    throw Error(ErrorKind::bad_input, path, "line 1",
-                "has no column '" + shape.label + "' for " + shape.name);
+  detail::WordLines line(path);
+  if (!line.next()) throw Error(ErrorKind::bad_input, path, "", "is empty");
+  const std::vector<std::string> names(line.words().begin(), line.words().end());
+  const std::size_t column = column_of(names, shape);
+  if (column == names.size()) {
+    line.refuse("has no column '" + shape.label + "' for " + shape.name);
   }
-  const auto at = static_cast<std::size_t>(column - names.begin());
-  if (lines.size() - 1 < points) {
-    throw Error(ErrorKind::bad_input, path, "",
-                "has " + std::to_string(lines.size() - 1) + " rows; the template of " + shape.name +
-                    " has " + std::to_string(points) + " points");
-  }
-  std::vector<std::int32_t> image(points);
-  for (std::size_t t = 0; t < points; ++t) {
-    const detail::WordLine& line = lines[t + 1];
-    const std::string place = "line " + std::to_string(line.number);
-    if (line.words.size() != names.size()) {
-      throw Error(ErrorKind::bad_input, path, place,
-                  "has " + std::to_string(line.words.size()) + " columns, not " +
-                      std::to_string(names.size()));
+  std::vector<std::int32_t> image;
+  while (image.size() < points && line.next()) {
+    if (line.words().size() != names.size()) {
+      line.refuse("has " + std::to_string(line.words().size()) + " columns, not " +
+                  std::to_string(names.size()));
     }
-    image[t] = vertex_from(line.words[at], 1, static_cast<std::int64_t>(points), path, place);
+    image.push_back(vertex_from(line, column, 1, static_cast<std::int64_t>(points)));
+  }
+  if (image.size() < points) {
+    throw Error(ErrorKind::bad_input, path, "",
+                "has " + std::to_string(image.size()) + " rows; the template of " + shape.name +
+                    " has " + std::to_string(points) + " points");
   }
   return image;
 }
@@ -90,12 +87,9 @@ std::vector<std::int32_t> template_symmetry(const std::string& path, const SetSh
 std::vector<std::int32_t> read_vertex_list(const std::string& path, std::int32_t first,
                                            std::int64_t vertices) {
   std::vector<std::int32_t> list;
-  for (const detail::WordLine& line : detail::read_word_lines(path)) {
-    const std::string place = "line " + std::to_string(line.number);
-    if (line.words.size() != 1) {
-      throw Error(ErrorKind::bad_input, path, place, "one vertex is wanted");
-    }
-    list.push_back(vertex_from(line.words[0], first, vertices, path, place));
+  for (detail::WordLines line(path); line.next();) {
+    if (line.words().size() != 1) line.refuse("one vertex is wanted");
+    list.push_back(vertex_from(line, 0, first, vertices));
   }
   return list;
 }
@@ -119,6 +113,10 @@ Truth map_truth(const ShapeSet& set, const SetShape& source, std::int64_t source
     require_rows(truth, from);
     return truth;
   }
+  if (!truth.partial && exists(from) != exists(to)) {
+    throw Error(ErrorKind::bad_input, exists(from) ? to : from, "",
+                "is missing; the other shape of the pair has its own");
+  }
   if (!truth.partial && sources != targets) {
     throw Error(ErrorKind::bad_input, source.file, "",
                 "nothing tells where its vertices belong on " + target.name +
@@ -140,12 +138,12 @@ Truth map_truth(const ShapeSet& set, const SetShape& source, std::int64_t source
 
 Truth symmetry_truth(const ShapeSet& set, const SetShape& shape, std::int64_t vertices) {
   const std::string own = beside(set, shape, ".vts");
-  if (!has_symmetry_truth(set, shape)) {
+  const std::string direct = beside(set, shape, ".sym.vts");
+  if (!exists(own) || (!exists(direct) && set.symmetry_columns.empty())) {
     throw Error(ErrorKind::bad_input, shape.file, "",
                 "no symmetry is known: neither .vts with .sym.vts nor .vts with symmetry.txt");
   }
   const std::vector<std::int32_t> vertex = read_vertex_list(own, 1, vertices);
-  const std::string direct = beside(set, shape, ".sym.vts");
   std::vector<std::int32_t> image;
   if (exists(direct)) {
     image = read_vertex_list(direct, 1, vertices);
@@ -204,7 +202,7 @@ const char* truth_form(const ShapeSet& set, const SetShape& shape) {
 bool has_symmetry_truth(const ShapeSet& set, const SetShape& shape) {
   return exists(beside(set, shape, ".vts")) &&
          (exists(beside(set, shape, ".sym.vts")) ||
-          exists((fs::path(set.folder) / "symmetry.txt").string()));
+          column_of(set.symmetry_columns, shape) < set.symmetry_columns.size());
 }
 
 }  // namespace timbre

@@ -29,7 +29,7 @@ struct Truth {
 /// The truth of a map between two shapes of a set: through the template where both have a
 /// `.vts` file (line i = vertex for point i of the template, from 1, 0 = none); else the
 /// source's `.map` file (line v = vertex of the whole for vertex v of the part, from 0); else
-/// equal numbers.
+/// equal numbers, unless one of the two alone has a `.vts`.
 ///
 /// @param sources  vertices of the source; @param targets of the target
 /// @throws Error  bad_input for lists that do not fit the meshes or each other, or if there

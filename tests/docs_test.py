@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """README and docs stay true: the C++ in the README is the file that the tests compile,
-and every command it names exists and takes the options shown.
+and every command it names exists and takes the options shown. No --help holds a byte that
+is no text.
 
 docs_test.py SOURCE_FOLDER TIMBRE"""
 import pathlib
@@ -38,6 +39,23 @@ for line in sorted(commands):
     for option in re.findall(r"(?<!\S)--?[a-z][a-z-]*", line):
         if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", text):
             problems.append(f"'timbre {line}': {' '.join(name)} has no {option}")
+
+
+
+def all_commands(words=()):
+    """Every command and its subcommands, as lists of words."""
+    yield list(words)
+    listed = re.search(r"^Subcommands:\n(.*?)(?:\n\n|\Z)", help_of(words), re.S | re.M)
+    for name in re.findall(r"^  (\w+)", listed[1] if listed else "", re.M):
+        yield from all_commands((*words, name))
+
+
+helps = {" ".join(words): help_of(words) for words in all_commands()}
+for name, text in helps.items():
+    if re.search(r"[\x00-\x09\x0b-\x1f]", text):
+        problems.append(f"'timbre {name} --help' holds control characters")
+if not {"eval match", "dataset make creatures", "db add"} <= helps.keys():
+    problems.append("not all commands were found")
 
 for target in re.findall(r"\]\(([^)#:]+)\)", readme):
     if not (source / target).exists():

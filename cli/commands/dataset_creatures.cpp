@@ -240,10 +240,23 @@ void make_creatures(const Arguments& args, const Context& context) {
                      escape_control(context.output) + "\n");
 }
 
-std::map<std::string, CreatureSet> set_words() {
-  std::map<std::string, CreatureSet> words;
-  for (const CreatureSet set : all_creature_sets()) words.emplace(to_word(set), set);
-  return words;
+void add_sets_option(CLI::App& command, std::vector<CreatureSet>& sets) {
+  std::map<std::string, CreatureSet> known;
+  std::vector<std::string> words;
+  for (const CreatureSet set : all_creature_sets()) {
+    known.emplace(to_word(set), set);
+    words.emplace_back(to_word(set));
+  }
+  const auto take = [&sets, known](const std::vector<std::string>& given) {
+    sets.clear();
+    for (const std::string& word : given) sets.push_back(known.at(word));
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--sets", take,
+                                                     "folders to make, comma-separated")
+      ->delimiter(',')
+      ->check(CLI::IsMember(words))
+      ->default_str("all");
 }
 
 }  // namespace
@@ -263,12 +276,7 @@ void add_make_creatures(CLI::App& make, Context& context) {
   command.add_option("--poses", args->poses, "poses of each; pose 0 is the creature at rest")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  command
-      .add_option("--sets", args->sets,
-                  "folders to make: shared,remeshed,noise,holes,cut,welded,coarse,fine")
-      ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(set_words()))
-      ->default_str("all");
+  add_sets_option(command, args->sets);
   command.add_option("--resolution", args->options.vertices, "about how many vertices a shape has")
       ->check(CLI::Range(1000, 50000))
       ->capture_default_str();

@@ -220,14 +220,11 @@ void add_distance(CLI::App& timbre, Context& context) {
                      "text file: each line the vertices of one source, from 0; # for comments");
   sources.add_option("--vertices", args->vertices, "each a source by itself: 0,17,42")
       ->delimiter(',');
-  command
-      .add_option("--method", args->distance.method,
-                  "exact; heat: approximate, faster for many sources; graph: too long by 2 %")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, DistanceMethod>{{"exact", DistanceMethod::exact},
-                                                {"heat", DistanceMethod::heat},
-                                                {"graph", DistanceMethod::graph}}))
-      ->default_str("exact");
+  add_word_option(command, "--method", args->distance.method,
+                  {{"exact", DistanceMethod::exact},
+                   {"heat", DistanceMethod::heat},
+                   {"graph", DistanceMethod::graph}},
+                  "heat: approximate, faster for many sources; graph: too long by 2 %");
   command
       .add_option("--time-factor", args->distance.time_factor,
                   "heat only: how far heat spreads, in squares of the mean edge length")

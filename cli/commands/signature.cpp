@@ -151,19 +151,16 @@ void add_signature(CLI::App& timbre, Context& context) {
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *timbre.add_subcommand(
       "signature", "Descriptors of a mesh (dna..., gps) or of its vertices (hks, wks)");
-  command
-      .add_option("--kind", args->signature,
-                  "dna, dna_raw, dna_i, dna_weyl, dna_log, hks, wks or gps")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SignatureKind>{{"dna", SignatureKind::dna},
-                                               {"dna_raw", SignatureKind::dna_raw},
-                                               {"dna_i", SignatureKind::dna_i},
-                                               {"dna_weyl", SignatureKind::dna_weyl},
-                                               {"dna_log", SignatureKind::dna_log},
-                                               {"hks", SignatureKind::hks},
-                                               {"wks", SignatureKind::wks},
-                                               {"gps", SignatureKind::gps}}))
-      ->default_str("hks");
+  add_word_option(command, "--kind", args->signature,
+                  {{"dna", SignatureKind::dna},
+                   {"dna_raw", SignatureKind::dna_raw},
+                   {"dna_i", SignatureKind::dna_i},
+                   {"dna_weyl", SignatureKind::dna_weyl},
+                   {"dna_log", SignatureKind::dna_log},
+                   {"hks", SignatureKind::hks},
+                   {"wks", SignatureKind::wks},
+                   {"gps", SignatureKind::gps}},
+                  "which descriptor");
   add_shared_options(command, *args, context);
   command.footer(
       "-o F.npy, F.npz (with times or energies) or F.txt. dna are the eigenvalues at unit total\n"
@@ -180,12 +177,11 @@ void add_embed(CLI::App& timbre, Context& context) {
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *timbre.add_subcommand(
       "embed", "Spectral coordinates of the vertices: gps, diffusion, biharmonic");
-  command.add_option("--kind", args->embedding.kind, "gps, diffusion or biharmonic")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, EmbeddingKind>{{"gps", EmbeddingKind::gps},
-                                               {"diffusion", EmbeddingKind::diffusion},
-                                               {"biharmonic", EmbeddingKind::biharmonic}}))
-      ->default_str("gps");
+  add_word_option(command, "--kind", args->embedding.kind,
+                  {{"gps", EmbeddingKind::gps},
+                   {"diffusion", EmbeddingKind::diffusion},
+                   {"biharmonic", EmbeddingKind::biharmonic}},
+                  "which coordinates");
   command.add_option("--time", args->embedding.time, "diffusion only, in units of total area")
       ->capture_default_str()
       ->check(number_between(1e-300, 1e300));

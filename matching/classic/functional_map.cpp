@@ -3,8 +3,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "timbre/analysis/core/number_text.h"
 #include "timbre/analysis/signatures/wave_kernel.h"
 #include "timbre/matching/detail/stages.h"
 
@@ -59,6 +61,10 @@ PointMap match_by_descriptors(const MatchSurface& A, const MatchSurface& B,
                               const DescriptorMapOptions& options) {
   detail::require_at_least("functions", options.functions, 3);
   detail::require_at_least("energies", options.energies, 2);
+  if (!(options.laplacian >= 0.0) || !std::isfinite(options.laplacian)) {
+    throw Error(ErrorKind::bad_request, "", "laplacian",
+                "is " + to_text(options.laplacian) + "; a finite number >= 0 is needed");
+  }
   const Index k =
       std::min({static_cast<Index>(options.functions), A.values.size(), B.values.size()});
   const WaveKernelBands bands = wave_kernel_bands(spectrum_of(A), {.energies = options.energies});

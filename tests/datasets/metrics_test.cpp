@@ -48,6 +48,22 @@ TEST(ScoreRanking, AgreesWithTheCaseWorkedByHand) {
   expect_scores(scores_of(3), 1, 1.0, 1, 2.0 * 0.2 / 1.2, 1.0, 1.0);
 }
 
+void expect_precision(const RetrievalScores& s, double first_half, double second_half) {
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_NEAR(s.precision[i], i < 10 ? first_half : second_half, 1e-15) << i;
+  }
+}
+
+// Of two relevant items the first makes a recall of a half.
+TEST(ScoreRanking, InterpolatesPrecisionAsWorkedByHand) {
+  expect_precision(scores_of(0), 1.0, 0.5);  // hits at ranks 1 and 4
+  expect_precision(scores_of(1), 0.5, 0.5);  // 2 and 4
+  expect_precision(scores_of(2), 0.5, 0.5);  // 3 and 4: the later is the better
+  expect_precision(scores_of(3), 1.0, 1.0);
+  expect_precision(evaluate_retrieval(kLabels, row_of).micro, 0.8, 0.7);
+  expect_precision(evaluate_retrieval(kLabels, row_of).macro, (2.0 / 3 + 1) / 2, 0.75);
+}
+
 TEST(ScoreRanking, CountsTiesAndUndefinedDistancesAgainstTheRanking) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();

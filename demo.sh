@@ -27,7 +27,7 @@ run db add demo/creatures.timbre $shapes/*.ply --labels $shapes/labels.txt | tai
 run db verify demo/creatures.timbre
 
 say "3. What else looks like this one, in any pose?"
-run query demo/creatures.timbre --stored horse1 -n 5
+run query demo/creatures.timbre --stored gorilla1 -n 5
 run eval retrieval demo/creatures.timbre
 
 say "4. Which point of one is which point of the other?"

@@ -32,6 +32,8 @@ for line in sorted(commands):
     name = [words[0]]
     if words[0] in ("db", "eval", "dataset") and len(words) > 1 and re.fullmatch(r"[a-z]+", words[1]):
         name.append(words[1])
+    if name == ["dataset", "make"] and len(words) > 2:
+        name.append(words[2])
     text = help_of(name)
     if text is None:
         problems.append(f"'timbre {line}': no such command")

@@ -93,8 +93,8 @@ nlohmann::json summary(const std::vector<nlohmann::json>& pairs, TruthKind kind)
   double error = 0.0, found_error = 0.0, matched = 0.0, found = 0.0, answered = 0.0, right = 0.0;
   double meshes = 0.0, flipped = 0.0, sided = 0.0;
   std::vector<double> curve(kCurvePoints, 0.0);
-  std::vector<double> thresholds;
-  for (int i = 0; i < kCurvePoints; ++i) thresholds.push_back(kCurveStep * i);
+  std::vector<double> thresholds(kCurvePoints);
+  for (int i = 0; i < kCurvePoints; ++i) thresholds[static_cast<std::size_t>(i)] = kCurveStep * i;
   std::map<std::string, std::array<int, 2>> verdicts;
   for (const nlohmann::json& pair : pairs) {
     const bool is_found = pair["found"].get<bool>();
@@ -211,7 +211,7 @@ std::vector<nlohmann::json> judge_set(const Arguments& args, const Context& cont
   MapJudge judge(args.judge, context);
   std::vector<nlohmann::json> pairs;
   for (const auto& [source, target] : work) {
-    const std::string key = source + "/" + target;  // no name holds a slash
+    const std::string key = (std::filesystem::path(source) / target).string();
     std::optional<nlohmann::json> known = log ? log->find(key) : std::nullopt;
     if (known && !is_whole(*known)) {
       if (!context.force) {

@@ -59,7 +59,7 @@ std::vector<double> sphere_eigenvalues(int count) {
   require_count(count);
   std::vector<double> values;
   for (int l = 0; static_cast<int>(values.size()) < count; ++l) {
-    values.insert(values.end(), static_cast<std::size_t>(2 * l + 1), l * (l + 1.0));
+    values.insert(values.end(), 2 * static_cast<std::size_t>(l) + 1, l * (l + 1.0));
   }
   values.resize(static_cast<std::size_t>(count));
   return values;
@@ -77,7 +77,8 @@ std::vector<double> disk_eigenvalues(int count) {
   constexpr double kStep = 0.1;  // zeros of one order lie about pi apart
   std::vector<double> values = {0.0};
   for (int order = 0; order <= most; ++order) {
-    for (double x = kStep; x < most; x += kStep) {
+    for (int step = 1; step * kStep < most; ++step) {
+      const double x = step * kStep;
       if ((bessel_slope(order, x) < 0.0) == (bessel_slope(order, x + kStep) < 0.0)) continue;
       const double value = squared(zero_between(order, x, x + kStep));
       values.insert(values.end(), order == 0 ? 1U : 2U, value);

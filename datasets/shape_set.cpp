@@ -266,6 +266,7 @@ std::vector<std::vector<std::size_t>> groups_of(const ShapeSet& set) {
     }
   }
   std::vector<std::vector<std::size_t>> result;
+  result.reserve(groups.size());
   for (const auto& [label, group] : groups) result.push_back(group);
   return result;
 }

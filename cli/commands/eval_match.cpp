@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "timbre/cli/commands/eval.h"
 #include "timbre/cli/commands/map_judge.h"
 #include "timbre/cli/commands/result_log.h"
+#include "timbre/cli/options.h"
 #include "timbre/cli/version.h"
 
 namespace timbre::cli {
@@ -26,6 +28,7 @@ struct Arguments {
   int number = 0;
 };
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCurveStep = 0.5;
 constexpr int kCurvePoints = 51;  // errors 0, 0.5, ..., 25
 
@@ -37,19 +40,21 @@ nlohmann::json to_json(const Judged& judged) {
   const MapScore& score = judged.score;
   nlohmann::json curve = nlohmann::json::array();
   for (int i = 0; i < kCurvePoints; ++i) curve.push_back(score.share_below(kCurveStep * i));
+  nlohmann::json flipped;  // null where nothing is known or answered
+  if (std::isfinite(score.mean_error) && std::isfinite(judged.mirrored_error.value_or(kNaN))) {
+    flipped = *judged.mirrored_error < score.mean_error;
+  }
   nlohmann::json line = judged.made;
-  line.update(
-      {{"source", judged.source},
-       {"target", judged.target},
-       {"error", number_or_null(score.mean_error)},
-       {"below5", score.below5},
-       {"matched", score.matched},
-       {"found", score.found},
-       {"rows", score.rows},
-       {"flipped", judged.mirrored_error ? nlohmann::json(*judged.mirrored_error < score.mean_error)
-                                         : nlohmann::json()},
-       {"right", score.share_below(kSymmetryError)},
-       {"pck", curve}});
+  line.update({{"source", judged.source},
+               {"target", judged.target},
+               {"error", number_or_null(score.mean_error)},
+               {"below5", score.below5},
+               {"matched", score.matched},
+               {"found", score.found},
+               {"rows", score.rows},
+               {"flipped", flipped},
+               {"right", score.share_below(kSymmetryError)},
+               {"pck", curve}});
   return line;
 }
 
@@ -88,8 +93,8 @@ nlohmann::json summary(const std::vector<nlohmann::json>& pairs, TruthKind kind)
   double error = 0.0, found_error = 0.0, matched = 0.0, found = 0.0, answered = 0.0, right = 0.0;
   double meshes = 0.0, flipped = 0.0, sided = 0.0;
   std::vector<double> curve(kCurvePoints, 0.0);
-  std::vector<double> thresholds;
-  for (int i = 0; i < kCurvePoints; ++i) thresholds.push_back(kCurveStep * i);
+  std::vector<double> thresholds(kCurvePoints);
+  for (int i = 0; i < kCurvePoints; ++i) thresholds[static_cast<std::size_t>(i)] = kCurveStep * i;
   std::map<std::string, std::array<int, 2>> verdicts;
   for (const nlohmann::json& pair : pairs) {
     const bool is_found = pair["found"].get<bool>();
@@ -154,14 +159,15 @@ std::string to_prose(const nlohmann::json& document, std::size_t pairs) {
 }
 
 nlohmann::json parameters(const Arguments& args) {
-  return {{"set", args.inputs.front()},
-          {"kind", args.judge.kind == TruthKind::map ? "map" : "sym"},
-          {"geodesic", args.judge.geodesic == GeodesicKind::exact ? "exact" : "graph"},
-          {"maps", args.judge.maps.empty() ? nlohmann::json() : nlohmann::json(args.judge.maps)},
-          {"method", args.judge.method == MatchMethod::tensor ? "tensor" : "functional"},
-          {"count", args.judge.count},
-          {"samples", args.judge.samples},
-          {"version", version_text()}};
+  return {
+      {"set", args.inputs.front()},
+      {"kind", args.judge.kind == TruthKind::map ? "map" : "sym"},
+      {"geodesic", args.judge.geodesic == GeodesicKind::exact ? "exact" : "graph"},
+      {"maps", args.judge.maps.empty() ? nlohmann::json() : nlohmann::json(args.judge.maps)},
+      {"save_maps", args.judge.save.empty() ? nlohmann::json() : nlohmann::json(args.judge.save)},
+      {"method", args.judge.method == MatchMethod::tensor ? "tensor" : "functional"},
+      {"count", args.judge.count},
+      {"version", version_text()}};
 }
 
 void create_map_folder(const std::string& folder) {
@@ -170,10 +176,30 @@ void create_map_folder(const std::string& folder) {
   if (failure) throw Error(ErrorKind::io, folder, "", failure.message());
 }
 
+// What an interrupted run left may have been edited.
+bool is_whole(const nlohmann::json& result) {
+  const auto holds = [&](const char* field, bool (nlohmann::json::*is)() const noexcept) {
+    return result.contains(field) && (result[field].*is)();
+  };
+  const auto holds_number_or_null = [&](const char* field) {
+    return result.contains(field) && (result[field].is_number() || result[field].is_null());
+  };
+  bool is_right = holds("source", &nlohmann::json::is_string) &&
+                  holds("target", &nlohmann::json::is_string) && holds_number_or_null("error") &&
+                  holds("found", &nlohmann::json::is_boolean) && result.contains("flipped") &&
+                  (result["flipped"].is_boolean() || result["flipped"].is_null()) &&
+                  holds("pck", &nlohmann::json::is_array) && result["pck"].size() == kCurvePoints;
+  for (const char* field : {"below5", "matched", "right"}) {
+    is_right = is_right && holds(field, &nlohmann::json::is_number);
+  }
+  return is_right && std::all_of(result["pck"].begin(), result["pck"].end(),
+                                 [](const nlohmann::json& share) { return share.is_number(); });
+}
+
 std::vector<nlohmann::json> judge_set(const Arguments& args, const Context& context) {
-  create_map_folder(args.judge.save);
   const ShapeSet set = read_shape_set(args.inputs.front());
   const auto work = work_of(args, set);
+  create_map_folder(args.judge.save);
   std::optional<ResultLog> log;
   if (!context.output.empty()) {
     log.emplace(context.output, parameters(args), context.force);
@@ -185,8 +211,15 @@ std::vector<nlohmann::json> judge_set(const Arguments& args, const Context& cont
   MapJudge judge(args.judge, context);
   std::vector<nlohmann::json> pairs;
   for (const auto& [source, target] : work) {
-    const std::string key = source + " " + target;
+    const std::string key = (std::filesystem::path(source) / target).string();
     std::optional<nlohmann::json> known = log ? log->find(key) : std::nullopt;
+    if (known && !is_whole(*known)) {
+      if (!context.force) {
+        throw Error(ErrorKind::bad_request, context.output, "",
+                    "holds a line that is no result; --force makes it again");
+      }
+      known.reset();
+    }
     if (!known) {
       known = to_json(judge.judge_pair(set, source, target));
       if (log) log->append(key, *known);
@@ -241,22 +274,20 @@ void add_eval_match(CLI::App& eval, Context& context) {
   auto args = std::make_shared<Arguments>();
   CLI::App& command = *eval.add_subcommand("match", "How right are maps? One, or those of a set");
   command
-      .add_option("INPUTS", args->inputs,
-                  "a folder of shapes with truth, or SOURCE TARGET MAP (with --kind sym: MESH MAP)")
+      .add_option(
+          "INPUTS", args->inputs,
+          "a folder of shapes with truth, or SOURCE TARGET MAP (with --kind sym: MESH MAP);\n"
+          "a map is text, a vertex of the target in each line, or .npy")
       ->required();
   command.add_option("-n,--number", args->number, "the first so many pairs; 0: all")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
-  command
-      .add_option("--kind", args->judge.kind, "map, or sym: the left-right symmetry of each shape")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, TruthKind>{{"map", TruthKind::map}, {"sym", TruthKind::symmetry}}))
-      ->default_str("map");
-  command
-      .add_option("--geodesic", args->judge.geodesic, "what errors are measured by: exact or graph")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, GeodesicKind>{
-          {"exact", GeodesicKind::exact}, {"graph", GeodesicKind::graph}}))
-      ->default_str("exact");
+  add_word_option(command, "--kind", args->judge.kind,
+                  {{"map", TruthKind::map}, {"sym", TruthKind::symmetry}},
+                  "map, or sym: the left-right symmetry of each shape");
+  add_word_option(command, "--geodesic", args->judge.geodesic,
+                  {{"exact", GeodesicKind::exact}, {"graph", GeodesicKind::graph}},
+                  "what errors are measured by");
   command
       .add_option("--samples", args->judge.samples,
                   "judge so many rows of the truth, chosen once and for all; 0: all")
@@ -268,13 +299,10 @@ void add_eval_match(CLI::App& eval, Context& context) {
                      "keep the computed maps in this folder, named as --maps wants them");
   command.add_option("--truth", args->judge.truth,
                      "of one map: a vertex of TARGET for each of SOURCE, from 0, -1 = none");
-  command
-      .add_option("--method", args->judge.method,
+  add_word_option(command, "--method", args->judge.method,
+                  {{"tensor", MatchMethod::tensor}, {"functional", MatchMethod::functional}},
                   "tensor: that of timbre match; functional: descriptors and ZoomOut, which do\n"
-                  "not tell left from right (Ovsjanikov et al. 2012), to compare with")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, MatchMethod>{
-          {"tensor", MatchMethod::tensor}, {"functional", MatchMethod::functional}}))
-      ->default_str("tensor");
+                  "not tell left from right (Ovsjanikov et al. 2012), to compare with");
   command.add_option("-k,--count", args->judge.count, "eigenfunctions used")
       ->capture_default_str()
       ->check(CLI::Range(30, 1000));

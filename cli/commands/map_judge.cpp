@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/output_file.h"
 #include "timbre/analysis/core/stopwatch.h"
+#include "timbre/cli/array_input.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/matching/classic/functional_map.h"
 #include "timbre/matching/match.h"
@@ -17,39 +20,62 @@ namespace fs = std::filesystem;
 
 std::string base_name(const std::string& file) { return fs::path(file).filename().string(); }
 
-// A set as a folder of one pair: what lies beside the two files.
-ShapeSet set_beside(const std::string& source, const std::string& target) {
+fs::path folder_of(const std::string& file) {
+  const fs::path folder = fs::path(file).parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+bool lie_together(const std::string& a, const std::string& b) {
+  std::error_code failure;
+  return fs::equivalent(folder_of(a), folder_of(b), failure) && !failure;
+}
+
+// The set in whose folder a mesh lies, with this mesh.
+ShapeSet set_beside(const std::string& mesh) {
   ShapeSet set;
-  const fs::path folder = fs::path(source).parent_path();
-  set.folder = set.truth_folder = folder.empty() ? "." : folder.string();
+  set.folder = set.truth_folder = folder_of(mesh).string();
+  const std::string folder = set.folder;
   try {
-    set = read_shape_set(set.folder);
-  } catch (const Error&) {
-    // A folder that is no set still holds these two, and what lies beside them.
+    set = read_shape_set(folder);
+  } catch (const Error& error) {
+    // A folder that is no set still has what lies beside the mesh. A broken list is told.
+    if (error.file() != folder) throw;
   }
-  const auto add = [&](const std::string& file) {
-    const std::string name = fs::path(file).filename().string();
-    const bool known = std::any_of(set.shapes.begin(), set.shapes.end(),
-                                   [&](const SetShape& one) { return one.name == name; });
-    if (!known) set.shapes.push_back({file, name, ""});
-  };
-  add(source);
-  add(target);
   return set;
 }
 
-std::vector<std::int32_t> listed_map(const std::string& file, const TriangleMesh& A,
-                                     const TriangleMesh& B) {
-  std::vector<std::int32_t> map = read_vertex_list(file, 0, B.vertices.rows());
-  if (static_cast<Eigen::Index>(map.size()) == A.vertices.rows()) return map;
-  throw Error(ErrorKind::bad_input, file, "",
-              "has " + std::to_string(map.size()) + " lines; the source has " +
-                  std::to_string(A.vertices.rows()) + " vertices");
+// Files need not look like meshes of a set.
+const SetShape& shape_of(ShapeSet& set, const std::string& file) {
+  const std::string name = base_name(file);
+  const auto known = std::find_if(set.shapes.begin(), set.shapes.end(),
+                                  [&](const SetShape& one) { return one.name == name; });
+  if (known != set.shapes.end()) return *known;
+  return set.shapes.emplace_back(SetShape{file, name, ""});
+}
+
+std::vector<std::int32_t> listed_map(const Context& context, const std::string& file,
+                                     const TriangleMesh& A, const TriangleMesh& B) {
+  std::vector<std::int32_t> map = file.ends_with(".npy")
+                                      ? read_point_map(context, file)
+                                      : read_vertex_list(file, 0, B.vertices.rows());
+  if (static_cast<Eigen::Index>(map.size()) != A.vertices.rows()) {
+    throw Error(ErrorKind::bad_input, file, "",
+                "has " + std::to_string(map.size()) + " lines; the source has " +
+                    std::to_string(A.vertices.rows()) + " vertices");
+  }
+  const auto most = map.empty() ? map.end() : std::max_element(map.begin(), map.end());
+  if (most != map.end() && *most >= B.vertices.rows()) {
+    throw Error(ErrorKind::bad_input, file, "row " + std::to_string(most - map.begin()),
+                std::to_string(*most) + " is no vertex; there are " +
+                    std::to_string(B.vertices.rows()) + ", from 0");
+  }
+  return map;
 }
 
 // A vertex of the target for each of the source.
-Truth listed_truth(const std::string& file, const TriangleMesh& A, const TriangleMesh& B) {
-  const std::vector<std::int32_t> image = listed_map(file, A, B);
+Truth listed_truth(const Context& context, const std::string& file, const TriangleMesh& A,
+                   const TriangleMesh& B) {
+  const std::vector<std::int32_t> image = listed_map(context, file, A, B);
   Truth truth;
   for (std::size_t v = 0; v < image.size(); ++v) {
     if (image[v] < 0) continue;
@@ -63,15 +89,21 @@ Truth listed_truth(const std::string& file, const TriangleMesh& A, const Triangl
 
 Judged MapJudge::judge_file(const std::string& source, const std::string& target,
                             const std::string& map) const {
-  const ShapeSet set = set_beside(source, target);
-  const SetShape& a = find_shape(set, base_name(source));
-  const SetShape& b = find_shape(set, base_name(target));
+  if (options_.truth.empty() && !lie_together(source, target)) {
+    throw Error(ErrorKind::bad_request, "", "inputs",
+                "SOURCE and TARGET lie in different folders; --truth FILE has to tell the truth");
+  }
+  ShapeSet set = set_beside(target);
+  const SetShape a = lie_together(source, target) ? shape_of(set, source)
+                                                  : SetShape{source, base_name(source), ""};
+  const SetShape b = shape_of(set, target);
   const TriangleMesh A = load(source);
   const TriangleMesh B = load(target);
-  const Truth truth =
-      options_.truth.empty() ? truth_of(set, a, A, b, B) : listed_truth(options_.truth, A, B);
+  const Truth truth = options_.truth.empty() ? truth_of(set, a, A, b, B)
+                                             : listed_truth(context_, options_.truth, A, B);
   Judged judged{a.name, b.name, {}, {}, nlohmann::json::object()};
-  compare(listed_map(map, A, B), truth, set, b, B, judged);
+  const std::vector<std::int32_t> listed = listed_map(context_, map, A, B);
+  for_file(b.file, [&] { compare(listed, truth, set, b, B, judged); });
   return judged;
 }
 
@@ -83,10 +115,13 @@ Judged MapJudge::judge_pair(const ShapeSet& set, const std::string& source,
   const TriangleMesh B = load(b.file);
   const Truth truth = truth_of(set, a, A, b, B);
   Judged judged{source, target, {}, {}, nlohmann::json::object()};
+  if (!options_.save.empty()) {
+    require_writable(map_file(options_.save, source, target), context_.force);
+  }
   Stopwatch watch;
   const bool is_given = !options_.maps.empty();
   const std::vector<std::int32_t> map =
-      is_given ? listed_map(map_file(options_.maps, source, target), A, B)
+      is_given ? listed_map(context_, map_file(options_.maps, source, target), A, B)
                : compute(a, A, b, B, judged.made);
   if (!is_given) judged.made["seconds"] = watch.lap();
   if (!options_.save.empty()) {
@@ -122,9 +157,9 @@ void MapJudge::compare(const std::vector<std::int32_t>& map, const Truth& known,
 
 std::string MapJudge::map_file(const std::string& folder, const std::string& source,
                                const std::string& target) const {
-  const auto stem = [](const std::string& name) { return name.substr(0, name.find_last_of('.')); };
-  const std::string name =
-      options_.kind == TruthKind::symmetry ? stem(source) : stem(source) + "_" + stem(target);
+  const std::string name = options_.kind == TruthKind::symmetry
+                               ? shape_stem(source)
+                               : shape_stem(source) + "_" + shape_stem(target);
   return (fs::path(folder) / (name + ".txt")).string();
 }
 

@@ -1,6 +1,7 @@
 #include "timbre/cli/commands/result_log.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,6 +20,31 @@ namespace {
   throw Error(ErrorKind::io, path, what, std::generic_category().message(errno));
 }
 
+// JSON holds UTF-8, file names any bytes. Text of a log has each byte that is no plain
+// character as \xNN: of two names no two are the same.
+std::string plain(const std::string& text) {
+  constexpr char kHex[] = "0123456789abcdef";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte < 0x7f && c != '\\') {
+      out += c;
+    } else {
+      out += std::string("\\x") + kHex[byte >> 4] + kHex[byte & 15];
+    }
+  }
+  return out;
+}
+
+std::string to_bytes(const nlohmann::json& line) {
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+bool is_result(const nlohmann::json& line) {
+  return line.is_object() && line.contains("key") && line["key"].is_string() &&
+         line.contains("result") && line["result"].is_object();
+}
+
 }  // namespace
 
 ResultLog::ResultLog(std::string path, const nlohmann::json& parameters, bool force)
@@ -33,6 +59,9 @@ ResultLog::ResultLog(std::string path, const nlohmann::json& parameters, bool fo
     if (::fstat(file_, &about) != 0) refuse(path_, "open");
     if (!S_ISREG(about.st_mode)) {
       throw Error(ErrorKind::bad_request, path_, "", "is no regular file");
+    }
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      throw Error(ErrorKind::bad_request, path_, "", "another run is writing to it");
     }
     if (about.st_size == 0) {
       write_line(parameters);
@@ -50,12 +79,14 @@ ResultLog::~ResultLog() { ::close(file_); }
 // What follows the last whole line was torn off by a crash, and is cut away.
 void ResultLog::read(const nlohmann::json& parameters, bool force) {
   const std::string text = read_bytes(path_);
+  const std::string first = to_bytes(parameters);
   std::size_t whole = 0;
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', whole)) {
     const std::string_view bytes = std::string_view(text).substr(whole, end - whole);
     const nlohmann::json line = nlohmann::json::parse(bytes, nullptr, false);
     const bool is_first = whole == 0;
-    const bool fits = is_first ? line == parameters : line.is_object() && line.contains("key");
+    const bool fits =
+        is_first ? bytes.size() + 1 == first.size() && first.starts_with(bytes) : is_result(line);
     if (!fits && !force) {
       throw Error(ErrorKind::bad_request, path_, "",
                   is_first ? "was made with other options, or is no log; --force begins anew"
@@ -69,7 +100,8 @@ void ResultLog::read(const nlohmann::json& parameters, bool force) {
     if (!is_first) known_[line["key"].get<std::string>()] = line["result"];
     whole = end + 1;
   }
-  if (whole == 0 && !force && !text.empty()) {
+  // Not even the first line may be whole.
+  if (whole == 0 && !force && !first.starts_with(text)) {
     throw Error(ErrorKind::bad_request, path_, "", "is no log; --force begins anew");
   }
   if (::ftruncate(file_, static_cast<off_t>(whole)) != 0) refuse(path_, "write");
@@ -78,7 +110,7 @@ void ResultLog::read(const nlohmann::json& parameters, bool force) {
 }
 
 void ResultLog::write_line(const nlohmann::json& line) {
-  const std::string text = line.dump() + "\n";
+  const std::string text = to_bytes(line);
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t count = ::write(file_, text.data() + done, text.size() - done);
     if (count < 0 && errno == EINTR) continue;
@@ -89,13 +121,13 @@ void ResultLog::write_line(const nlohmann::json& line) {
 }
 
 std::optional<nlohmann::json> ResultLog::find(const std::string& key) const {
-  const auto entry = known_.find(key);
+  const auto entry = known_.find(plain(key));
   if (entry == known_.end()) return std::nullopt;
   return entry->second;
 }
 
 void ResultLog::append(const std::string& key, const nlohmann::json& result) {
-  write_line({{"key", key}, {"result", result}});
+  write_line({{"key", plain(key)}, {"result", result}});
 }
 
 }  // namespace timbre::cli

@@ -15,10 +15,7 @@ constexpr int kSide = 256;  // pixels
 
 std::vector<ShapeInfo> queries_of(const Material& material) {
   std::vector<ShapeInfo> queries;
-  if (!material.has_labels) {
-    const std::size_t wanted = std::min(kQueries, material.shapes.size());
-    return {material.shapes.begin(), material.shapes.begin() + wanted};
-  }
+  if (!material.has_labels) return first_shapes(material, kQueries);
   for (const ShapeClass& one : material.classes) {
     if (queries.size() < kQueries && !one.label.empty()) queries.push_back(one.shapes.front());
   }

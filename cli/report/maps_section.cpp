@@ -119,9 +119,6 @@ std::string pair_html(Material& material, const Pair& pair, bool is_first) {
   html += viewer({pair.source, pair.source_colours, stem_of(pair.result.source)},
                  {pair.target, pair.target_colours, stem_of(pair.result.target)}, pair.map,
                  material.inputs.pictures.up, element("div", {{"class", "cards two"}}, pictures));
-  html += element("p", {{"class", "hint"}},
-                  "Drag to turn both, or use the arrow keys; point at one surface and the matched "
-                  "point is marked on the other.");
   if (wrong.empty()) return html;
   return html + element("div", {{"class", "beside"}},
                         wrong + element("div", element("p", kAboutErrors) + error_strip()));

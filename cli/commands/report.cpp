@@ -10,11 +10,17 @@
 namespace timbre::cli {
 namespace {
 
-void run(ReportInputs& inputs, const Context& context) {
-  context.require_output();
+// Its own copy of the inputs: what progress has left on the terminal goes away with it, before
+// the answer comes.
+ReportPage make(ReportInputs inputs, const Context& context) {
   inputs.pictures.threads = context.threads;
   inputs.pictures.progress = context.progress();
-  const ReportPage made = make_report(inputs);
+  return make_report(inputs);
+}
+
+void run(const ReportInputs& inputs, const Context& context) {
+  context.require_output();
+  const ReportPage made = make(inputs, context);
   context.write_result(context.output, made.html);
   context.answer(
       {{"output", context.output}, {"sections", made.sections}, {"bytes", made.html.size()}},

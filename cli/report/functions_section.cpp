@@ -12,7 +12,7 @@
 namespace timbre::cli {
 namespace {
 
-constexpr int kSide = 320;   // pixels
+constexpr int kSide = 288;   // pixels
 constexpr int kPairs = 100;  // eigenpairs, of which signatures are made
 constexpr std::array kShown = {1, 2, 3, 5, 8, 13};
 
@@ -20,7 +20,7 @@ struct HeatTime {
   int column;  ///< of the 64 times
   const char* words;
 };
-constexpr std::array kTimes = {HeatTime{6, "small"}, HeatTime{22, "medium"}, HeatTime{40, "large"}};
+constexpr std::array kTimes = {HeatTime{2, "small"}, HeatTime{22, "medium"}, HeatTime{42, "large"}};
 
 // The shape in the middle: of many classes the first is often one of the simplest.
 const ShapeInfo& chosen_shape(const Material& material) {
@@ -88,14 +88,14 @@ std::string functions_section(Material& material) {
   const std::string warmth =
       "The heat kernel signature of the same surface: how much of the heat put on a point is "
       "still there after a while. At first tips keep it best, later whole limbs.";
-  return section(
-      "functions", "What the eigenfunctions look like",
-      element("p", about) + element("div", {{"class", "cards"}}, waves) +
-          element("p", {{"class", "key"}}, colour_strip(ColourMapKind::diverging, "down", "up")) +
-          element("h3", "Heat that stays") + element("p", warmth) +
-          element("div", {{"class", "cards"}}, heat) +
-          element("p", {{"class", "key"}},
-                  colour_strip(ColourMapKind::sequential, "little heat left", "much")));
+  return section("functions", "What the eigenfunctions look like",
+                 element("p", about) + element("div", {{"class", "cards"}}, waves) +
+                     element("p", {{"class", "key"}},
+                             colour_strip(ColourMapKind::diverging, "one way", "the other")) +
+                     element("h3", "Heat that stays") + element("p", warmth) +
+                     element("div", {{"class", "cards"}}, heat) +
+                     element("p", {{"class", "key"}},
+                             colour_strip(ColourMapKind::sequential, "little heat left", "much")));
 }
 
 }  // namespace timbre::cli

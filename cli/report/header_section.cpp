@@ -18,8 +18,7 @@ std::string count(const std::string& what, const std::string& value) {
 std::vector<ShapeInfo> heroes(const Material& material) {
   std::vector<ShapeInfo> chosen;
   const std::size_t classes = material.classes.size();
-  const std::size_t wanted = std::min(kHeroes, material.shapes.size());
-  if (classes == 1) return {material.shapes.begin(), material.shapes.begin() + wanted};
+  if (classes == 1) return first_shapes(material, kHeroes);
   // Spread over all classes, which are often sorted by kind.
   for (std::size_t i = 0; i < std::min(kHeroes, classes); ++i) {
     chosen.push_back(material.classes[i * classes / std::min(kHeroes, classes)].shapes.front());
@@ -36,7 +35,9 @@ std::string header_section(Material& material, const std::string& title) {
     row += material.pictures.picture({{.mesh = mesh}, "The shape " + shape.name}, kHeroSide);
   }
   std::string counts = count("shapes", std::to_string(material.shapes.size()));
-  if (material.has_labels) counts += count("classes", std::to_string(material.classes.size()));
+  const auto classes = std::count_if(material.classes.begin(), material.classes.end(),
+                                     [](const ShapeClass& one) { return !one.label.empty(); });
+  if (classes > 0) counts += count("classes", std::to_string(classes));
   counts += count("eigenvalues of each", std::to_string(material.store.parameters().count));
   counts += count("compared by", kDefaultChannel);
   const std::string lead =

@@ -15,7 +15,9 @@ namespace timbre::cli {
 namespace {
 
 constexpr std::size_t kMostPairs = 4;
-constexpr int kSide = 400;            // pixels
+constexpr int kSide = 360;  // pixels
+// Points whose errors are measured; those between take the colours of their neighbours.
+constexpr std::size_t kMostErrors = 1200;
 constexpr double kWorstShown = 15.0;  // error at the end of the colours
 
 /// A pair of the log with its surfaces and its map.
@@ -51,10 +53,11 @@ VertexColours error_colours(const Material& material, const Pair& pair) {
   const Truth truth =
       map_truth(set, find_shape(set, pair.result.source), pair.source.vertices.rows(),
                 find_shape(set, pair.result.target), pair.target.vertices.rows());
+  const std::size_t step = 1 + truth.source.size() / kMostErrors;
   std::vector<std::int32_t> from, to;
   for (std::size_t row = 0; row < truth.source.size(); ++row) {
     const std::int32_t image = pair.map[static_cast<std::size_t>(truth.source[row])];
-    if (image < 0) continue;
+    if (image < 0 || row % step != 0) continue;
     from.push_back(image);
     to.push_back(truth.target[row]);
   }
@@ -93,31 +96,38 @@ std::string pair_figures(Material& material, const Pair& pair) {
                "in colours brought by the map", "colours brought by the map");
 }
 
+constexpr char kAboutErrors[] =
+    "The truth of this pair is known. Here the target is coloured by how far its points are from "
+    "where the map should have put them.";
+
+std::string error_strip() {
+  return colour_strip(ColourMapKind::sequential, "error 0", to_text(kWorstShown) + " and more");
+}
+
 std::string pair_html(Material& material, const Pair& pair, bool is_first) {
   const std::string heading = escape_html(stem_of(pair.result.source)) + " \u2192 " +
                               escape_html(stem_of(pair.result.target));
   std::string html =
       element("h3", heading) + element("p", {{"class", "verdict"}}, verdict_of(pair.result));
   const std::string pictures = pair_figures(material, pair);
-  std::string wrong;
   const VertexColours errors = error_colours(material, pair);
-  if (errors.rows() > 0) {
-    wrong = shown(material, pair.target, errors, stem_of(pair.result.target),
-                  "coloured by the error of the map", "how far off the map is");
-  }
+  const std::string wrong =
+      errors.rows() == 0 ? ""
+                         : shown(material, pair.target, errors, stem_of(pair.result.target),
+                                 "coloured by the error of the map", "how far off the map is");
   if (!is_first) return html + element("div", {{"class", "cards three"}}, pictures + wrong);
   html += viewer({pair.source, pair.source_colours, stem_of(pair.result.source)},
                  {pair.target, pair.target_colours, stem_of(pair.result.target)}, pair.map,
                  material.inputs.pictures.up, element("div", {{"class", "cards two"}}, pictures));
-  html += element("p", {{"class", "hint"}},
-                  "Drag to turn both, or use the arrow keys; point at one surface and the matched "
-                  "point is marked on the other.");
-  return html + element("div", {{"class", "cards three"}}, wrong);
+  if (wrong.empty()) return html;
+  return html + element("div", {{"class", "beside"}},
+                        wrong + element("div", element("p", kAboutErrors) + error_strip()));
 }
 
 std::string curve_figure(const EvaluationLog& log) {
   Plot plot;
   plot.about = "Share of points against the error allowed";
+  plot.height = 340.0;
   plot.x = {"error allowed, in hundredths of the target\u2019s size", 0.0, 25.0, {}};
   plot.y = {"share of points", 0.0, 1.0, {}};
   for (int i = 0; i <= 5; ++i) plot.x.ticks.emplace_back(5.0 * i, std::to_string(5 * i));
@@ -154,19 +164,12 @@ std::string maps_section(Material& material) {
   if (!material.matches || material.matches->maps.empty()) return "";
   std::string pairs;
   std::size_t count = 0;
-  bool has_errors = false;
   for (const EvaluatedMap& result : material.matches->maps) {
     if (material.inputs.maps.empty() || count == kMostPairs) break;
     // A log may be longer than the folder of maps that were kept.
     if (!std::filesystem::exists(map_file(material, result))) continue;
     pairs += pair_html(material, load_pair(material, result), count == 0);
-    has_errors = material.set.has_value();
     ++count;
-  }
-  if (has_errors) {
-    pairs += element(
-        "p", {{"class", "key"}},
-        colour_strip(ColourMapKind::sequential, "error 0", to_text(kWorstShown) + " and more"));
   }
   const std::string about =
       count == 0 ? "How far maps between two poses are from the truth."

@@ -32,6 +32,9 @@ struct Material {
 /// @throws Error  bad_input if neither has it
 [[nodiscard]] TriangleMesh mesh_of(const Material& material, const std::string& file);
 
+/// The first shapes of the database, at most `count`.
+[[nodiscard]] std::vector<ShapeInfo> first_shapes(const Material& material, std::size_t count);
+
 /// A name without its ending.
 [[nodiscard]] std::string stem_of(const std::string& file);
 

@@ -11,14 +11,13 @@ namespace {
 
 // In units of the drawing, which is scaled to the width of the page. On a narrow one it keeps
 // its size and scrolls: letters would be too small.
-constexpr double kWidth = 860.0;
-constexpr double kHeight = 440.0;
+constexpr double kWidth = 960.0;
 constexpr double kLeft = 62.0;
 constexpr double kTop = 14.0;
 constexpr double kBottom = 54.0;
-constexpr double kLetter = 7.6;     // mean width, of a label's letters
+constexpr double kLetter = 8.8;     // mean width, of a label's letters
 constexpr double kLine = 17.0;      // from one label to the next
-constexpr double kLeader = 26.0;    // from a curve's end to its label
+constexpr double kLeader = 34.0;    // from a curve's end to its label
 constexpr std::size_t kDashes = 8;  // colours; after these they come again with dashes
 
 // A name of as many letters as eyes count, not bytes.
@@ -44,8 +43,9 @@ struct Frame {
     return kLeft + (right - kLeft) * share_on(plot.x, value);
   }
   [[nodiscard]] double y(double value) const {
-    return kHeight - kBottom - (kHeight - kBottom - kTop) * share_on(plot.y, value);
+    return bottom() - (bottom() - kTop) * share_on(plot.y, value);
   }
+  [[nodiscard]] double bottom() const { return plot.height - kBottom; }
 };
 
 std::string line(double x1, double y1, double x2, double y2, const char* kind) {
@@ -60,7 +60,7 @@ std::string text(double x, double y, const char* kind, const std::string& words)
 }
 
 std::string axes(const Frame& frame) {
-  const double bottom = kHeight - kBottom;
+  const double bottom = frame.bottom();
   std::string svg;
   for (const auto& [value, words] : frame.plot.y.ticks) {
     const double y = frame.y(value);
@@ -71,7 +71,8 @@ std::string axes(const Frame& frame) {
     svg += line(x, bottom, x, bottom + 5.0, "axis") + text(x, bottom + 20.0, "middle", words);
   }
   svg += line(kLeft, bottom, frame.right, bottom, "axis");
-  svg += text((kLeft + frame.right) / 2.0, kHeight - 10.0, "middle title", frame.plot.x.title);
+  svg += text((kLeft + frame.right) / 2.0, frame.plot.height - 10.0, "middle title",
+              frame.plot.x.title);
   const double middle = (kTop + bottom) / 2.0;
   svg += element("text",
                  {{"class", "middle title"},
@@ -98,41 +99,51 @@ double end_of(const Frame& frame, const PlotSeries& series) {
   return sum / static_cast<double>(series.curves.size());
 }
 
-// Heights of labels in their order, at least a line apart, and inside the picture.
-std::vector<double> spread_labels(const std::vector<double>& wanted) {
-  std::vector<std::size_t> order(wanted.size());
+// Where the labels of series stand, in the order of the series.
+struct Labels {
+  std::vector<double> heights;
+  bool are_near = true;  ///< each beside its curve; otherwise they are a list
+};
+
+// Labels beside the ends of their curves, a line apart. Where that would lead far away, as all
+// curves end together, an even list with a sample of each line reads better.
+Labels place_labels(const Frame& frame, const std::vector<double>& ends) {
+  std::vector<std::size_t> order(ends.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return wanted[a] < wanted[b]; });
-  std::vector<double> placed(wanted.size());
-  const auto count = static_cast<double>(wanted.size());
-  const double step = std::min(kLine, (kHeight - kTop - 8.0) / std::max(1.0, count));
+                   [&](std::size_t a, std::size_t b) { return ends[a] < ends[b]; });
+  Labels labels{std::vector<double>(ends.size())};
   double least = kTop;
-  for (const std::size_t i : order) least = placed[i] = std::max(least + step, wanted[i]);
-  double most = kHeight - kBottom;
-  // Back up, half of what was pushed too far down.
-  for (auto i = order.rbegin(); i != order.rend(); ++i) {
-    placed[*i] = std::min(most, placed[*i]);
-    most = placed[*i] - step;
+  for (const std::size_t i : order) {
+    labels.heights[i] = std::max(least, ends[i]);
+    least = labels.heights[i] + kLine;
+    if (labels.heights[i] - ends[i] > 2.0 * kLine) labels.are_near = false;
   }
-  return placed;
+  if (labels.are_near) return labels;
+  const double room = frame.bottom() - kTop;
+  const double step = std::min(1.3 * kLine, room / static_cast<double>(ends.size()));
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    labels.heights[i] = kTop + step * (static_cast<double>(i) + 0.5);
+  }
+  return labels;
 }
 
-std::string draw(const Frame& frame, const PlotSeries& series, double label_at) {
-  const std::size_t style = static_cast<std::size_t>(std::max(0, series.style));
+std::string label(const Frame& frame, const PlotSeries& series, double height, bool is_near) {
+  const double from = is_near ? end_of(frame, series) : height;
+  return "<path class=\"leader\" d=\"M" + number(frame.right + 3.0) + " " + number(from) + "L" +
+         number(frame.right + kLeader - 12.0) + " " + number(height) + "h6\"/>" +
+         text(frame.right + kLeader, height + 5.0, "label", series.label);
+}
+
+std::string draw(const Frame& frame, const PlotSeries& series, const std::string& label_svg) {
+  const auto style = static_cast<std::size_t>(std::max(0, series.style));
   std::string kind = "series c" + std::to_string(style % kDashes);
   if (style / kDashes % 3 == 1) kind += " dashed";
   if (style / kDashes % 3 == 2) kind += " dotted";
   if (series.is_bold) kind += " bold";
   std::string svg;
   for (const auto& curve : series.curves) svg += path(frame, curve);
-  if (!series.label.empty()) {
-    const double end = end_of(frame, series);
-    svg += "<path class=\"leader\" d=\"M" + number(frame.right + 3.0) + " " + number(end) + "L" +
-           number(frame.right + kLeader - 10.0) + " " + number(label_at) + "h6\"/>";
-    svg += text(frame.right + kLeader, label_at + 4.5, "label", series.label);
-  }
-  return element("g", {{"class", kind}}, svg) + "\n";
+  return element("g", {{"class", kind}}, svg + label_svg) + "\n";
 }
 
 }  // namespace
@@ -145,17 +156,20 @@ std::string to_svg(const Plot& plot) {
   for (const PlotSeries& series : plot.series) {
     if (!series.label.empty()) ends.push_back(end_of(frame, series));
   }
-  const std::vector<double> places = spread_labels(ends);
+  const Labels labels = place_labels(frame, ends);
   std::string svg = axes(frame);
   std::size_t labelled = 0;
   for (const PlotSeries& series : plot.series) {
-    svg += draw(frame, series, series.label.empty() ? 0.0 : places[labelled++]);
+    const bool has_label = !series.label.empty();
+    svg += draw(frame, series,
+                has_label ? label(frame, series, labels.heights[labelled++], labels.are_near) : "");
   }
-  const std::string drawing = element("svg",
-                                      {{"viewBox", "0 0 " + number(kWidth) + " " + number(kHeight)},
-                                       {"role", "img"},
-                                       {"aria-label", plot.about}},
-                                      "\n" + svg);
+  const std::string drawing =
+      element("svg",
+              {{"viewBox", "0 0 " + number(kWidth) + " " + number(plot.height)},
+               {"role", "img"},
+               {"aria-label", plot.about}},
+              "\n" + svg);
   return element("div", {{"class", "plot"}, {"tabindex", "0"}}, drawing);
 }
 

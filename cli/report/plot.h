@@ -25,6 +25,7 @@ struct Plot {
   std::string about;  ///< what it shows, for those who do not see it
   PlotAxis x, y;
   std::vector<PlotSeries> series;
+  double height = 440.0;  ///< of a drawing 960 wide
 };
 
 /// Curves with axes as an inline SVG that takes its colours from the page. Labels stand at the

@@ -65,6 +65,13 @@ TriangleMesh mesh_of(const Material& material, const std::string& file) {
               "has no shape '" + stem_of(file) + "', which a log names; give --set FOLDER");
 }
 
+std::vector<ShapeInfo> first_shapes(const Material& material, std::size_t count) {
+  std::vector<ShapeInfo> shapes = material.shapes;
+  if (shapes.size() > count)
+    shapes.erase(shapes.begin() + static_cast<std::ptrdiff_t>(count), shapes.end());
+  return shapes;
+}
+
 ReportPage make_report(const ReportInputs& inputs) {
   Material material = gather(inputs);
   const std::string title = title_of(inputs);

@@ -116,9 +116,10 @@ std::string viewer(const ViewedSurface& source, const ViewedSurface& target,
       "\n" + surface_data(source, *from, up, "source") + surface_data(target, *to, up, "target");
   html += block("images", images(target, from->original, map, up));
   return element("div", {{"class", "viewer"}, {"data-state", "still"}}, html) +
-         element("noscript",
-                 element("p", "The pictures above can be turned where JavaScript is allowed.")) +
-         "\n";
+         element("p", {{"class", "hint"}},
+                 "Drag to turn both, or use the arrow keys; point at one surface and the matched "
+                 "point is marked on the other.") +
+         element("noscript", element("p", "With JavaScript these pictures can be turned.")) + "\n";
 }
 
 }  // namespace timbre::cli

@@ -2,7 +2,7 @@
 "use strict";
 
 (function () {
-  const START = {yaw: -0.66, pitch: 0.35, distance: 4.1};
+  const START = {yaw: -0.66, pitch: 0.35, distance: 3.7};
   const MARK = 0xd6246e;
 
   function bytesOf(box, name) {
@@ -25,8 +25,8 @@
     const mark = new THREE.Mesh(new THREE.SphereGeometry(0.035, 24, 16), new THREE.MeshBasicMaterial({color: MARK}));
     mark.visible = false;
     const scene = new THREE.Scene();
-    scene.add(mesh, mark, new THREE.HemisphereLight(0xffffff, 0x8a857c, 0.75));
-    const lamp = new THREE.DirectionalLight(0xffffff, 0.45);
+    scene.add(mesh, mark, new THREE.HemisphereLight(0xffffff, 0xb5b0a8, 0.8));
+    const lamp = new THREE.DirectionalLight(0xffffff, 0.4);
     scene.add(lamp);
     return {scene, mesh, mark, lamp, points: geometry.getAttribute("position").array};
   }

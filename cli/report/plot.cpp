@@ -12,7 +12,7 @@ namespace {
 // In units of the drawing, which is scaled to the width of the page. On a narrow one it keeps
 // its size and scrolls: letters would be too small.
 constexpr double kWidth = 960.0;
-constexpr double kLeft = 62.0;
+constexpr double kLeft = 76.0;
 constexpr double kTop = 14.0;
 constexpr double kBottom = 54.0;
 constexpr double kLetter = 8.8;     // mean width, of a label's letters

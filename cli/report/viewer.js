@@ -61,6 +61,13 @@
       surfaces[side].lamp.position.set(-1, 1.4, 1).applyQuaternion(camera.quaternion);
     }
 
+    // The place of a surface on the canvas: side by side, or on a narrow one above each other.
+    function place(side) {
+      const width = canvas.clientWidth, height = canvas.clientHeight;
+      if (width > height) return {x: side * width / 2, y: 0, width: width / 2, height};
+      return {x: 0, y: side * height / 2, width, height: height / 2};
+    }
+
     function draw() {
       isAsked = false;
       const width = canvas.clientWidth, height = canvas.clientHeight;
@@ -68,13 +75,14 @@
       renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
       renderer.setSize(width, height, false);
       renderer.setScissorTest(true);
-      camera.aspect = width / 2 / height;
+      camera.aspect = place(0).width / place(0).height;
       // On a narrow half the shape must fit its width.
       camera.fov = camera.aspect >= 1 ? 32 : 2 * Math.atan(Math.tan(16 * Math.PI / 180) / camera.aspect) * 180 / Math.PI;
       camera.updateProjectionMatrix();
       for (let side = 0; side < 2; side++) {
-        renderer.setViewport(side * width / 2, 0, width / 2, height);
-        renderer.setScissor(side * width / 2, 0, width / 2, height);
+        const at = place(side), low = height - at.y - at.height;
+        renderer.setViewport(at.x, low, at.width, at.height);
+        renderer.setScissor(at.x, low, at.width, at.height);
         aim(side);
         renderer.render(surfaces[side].scene, camera);
       }
@@ -104,10 +112,13 @@
     // Marks what lies under the pointer, and its match.
     function mark(event) {
       const area = canvas.getBoundingClientRect();
-      const x = (event.clientX - area.left) / area.width * 2, y = (event.clientY - area.top) / area.height;
-      const side = x < 1 ? 0 : 1;
+      const x = event.clientX - area.left, y = event.clientY - area.top;
+      const second = place(1);
+      const side = x >= second.x && y >= second.y ? 1 : 0;
+      const at = place(side);
       aim(side);
-      caster.setFromCamera(new THREE.Vector2((x - side) * 2 - 1, 1 - 2 * y), camera);
+      caster.setFromCamera(
+        new THREE.Vector2((x - at.x) / at.width * 2 - 1, 1 - (y - at.y) / at.height * 2), camera);
       const hit = caster.intersectObject(surfaces[side].mesh)[0];
       const from = surfaces[side], to = surfaces[1 - side];
       const i = hit ? nearest(side === 0 ? from.points : images, hit.point) : -1;

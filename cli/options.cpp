@@ -16,14 +16,14 @@ void add_operator_options(CLI::App& command, OperatorOptions& options) {
 }
 
 void add_up_option(CLI::App& command, UpAxis& up) {
-  command.add_option("--up", up, "axis that points up: x, y, z, -x, -y or -z")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, UpAxis>{{"x", UpAxis::x},
-                                                                        {"y", UpAxis::y},
-                                                                        {"z", UpAxis::z},
-                                                                        {"-x", UpAxis::minus_x},
-                                                                        {"-y", UpAxis::minus_y},
-                                                                        {"-z", UpAxis::minus_z}}))
-      ->default_str("y");
+  add_word_option(command, "--up", up,
+                  {{"x", UpAxis::x},
+                   {"y", UpAxis::y},
+                   {"z", UpAxis::z},
+                   {"-x", UpAxis::minus_x},
+                   {"-y", UpAxis::minus_y},
+                   {"-z", UpAxis::minus_z}},
+                  "axis that points up in pictures");
 }
 
 CLI::Validator number_between(double low, double high) {

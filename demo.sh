@@ -17,9 +17,9 @@ run() {
   "$timbre" "$@"
 }
 
-say "1. Shapes: six kinds of creatures, each individual in a pose and in triangles of its own"
+say "1. Shapes: five kinds of creatures, each individual in a pose and in triangles of its own"
 run dataset make creatures -o demo/creatures --sets remeshed --poses 4 --resolution 4500 \
-  --species person,gorilla,horse,cat,ostrich,lizard --quiet
+  --species person,gorilla,horse,cat,ostrich --quiet
 run info $shapes/person1.ply
 
 say "2. A database of what they sound like"

@@ -32,6 +32,16 @@ TEST_P(BallOfAnySize, IsAClosedSphereWithItsPointsOnTheSurface) {
     EXPECT_NEAR(sphere.mesh.vertices.row(v).norm(), GetParam(), 1e-9);
   }
 }
+TEST_P(BallOfAnySize, IsOneInAnyTurnedLatticeWithoutMirrorSymmetry) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.9, Vector3d(1.0, 2.0, -0.5).normalized()));
+  const TriangleMesh sphere = make_isosurface(ball(GetParam()), kBox, 0.15, turn);
+  EXPECT_EQ(orient_outward(sphere).faces, sphere.faces);
+  EXPECT_EQ(orient_outward(sphere).orientation, Orientation::outward);
+  EXPECT_EQ(2 * sphere.vertices.rows() - sphere.faces.rows(), 4);
+  EXPECT_LT((sphere.vertices.rowwise().norm().array() - GetParam()).abs().maxCoeff(), 1e-9);
+  EXPECT_TRUE((sphere.vertices.col(0).array() != 0.0).all());
+}
+
 INSTANTIATE_TEST_SUITE_P(Radii, BallOfAnySize, testing::Values(0.25, 0.4, 0.5, 0.77, 0.9, 1.0));
 
 TEST(MakeIsosurface, FindsTheHoleOfATorusAcrossThePlane) {

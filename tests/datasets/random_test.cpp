@@ -21,6 +21,20 @@ TEST(Random, StreamsDifferByTopicAndByNumbers) {
   EXPECT_NE(Random("topic", {2}).uniform(0.0, 1.0), usual);
 }
 
+TEST(Random, NormalHasMean0AndVariance1) {
+  Random random("normal", {});
+  double sum = 0.0;
+  double squares = 0.0;
+  constexpr int kCount = 100000;
+  for (int i = 0; i < kCount; ++i) {
+    const double x = random.normal();
+    sum += x;
+    squares += x * x;
+  }
+  EXPECT_NEAR(sum / kCount, 0.0, 0.015);
+  EXPECT_NEAR(squares / kCount, 1.0, 0.02);
+}
+
 TEST(Random, StaysInRangeAndPermutesAll) {
   Random random("range", {});
   for (int i = 0; i < 1000; ++i) {

@@ -29,7 +29,6 @@ constexpr int kRounds = 12;  // of relaxation; more changes little
 // they are (i, j, k) = (v + u, v - u, w), all odd or all even.
 class Lattice {
  public:
-  //
   // What lies at x < 0 is left out.
   Lattice(const ImplicitFunction& f, const Eigen::AlignedBox3d& box, double cell)
       : f_(f), step_(cell / std::sqrt(2.0), cell / 2.0, cell / std::sqrt(2.0)) {

@@ -98,12 +98,14 @@ ErrorScale::ErrorScale(ErrorScale&&) noexcept = default;
 ErrorScale& ErrorScale::operator=(ErrorScale&&) noexcept = default;
 
 std::vector<double> ErrorScale::between(std::span<const std::int32_t> from,
-                                        std::span<const std::int32_t> to, int threads) const {
+                                        std::span<const std::int32_t> to, int threads,
+                                        const Progress& progress) const {
   constexpr std::size_t kBlock = 64;  // groups that share a workspace
   require_vertices(from, to, impl_->vertices);
   const std::vector<Group> groups = group_by_target(from, to);
   std::vector<double> result(from.size());
   const auto blocks = static_cast<std::int64_t>((groups.size() + kBlock - 1) / kBlock);
+  SharedProgress shared(progress, "judging", std::ssize(groups));
   parallel_for(blocks, threads, [&](std::int64_t block) {
     ExactGeodesics exact(impl_->mesh);
     const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
@@ -113,6 +115,7 @@ std::vector<double> ErrorScale::between(std::span<const std::int32_t> from,
         result[groups[g].rows[i]] =
             std::isfinite(distances[i]) ? distances[i] / impl_->unit : kUnreached;
       }
+      shared.finish_one();
     }
   });
   return result;
@@ -123,7 +126,7 @@ double MapScore::share_below(double error) const {
 }
 
 MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
-                   const ErrorScale& scale, int threads) {
+                   const ErrorScale& scale, int threads, const Progress& progress) {
   std::vector<std::int32_t> image;
   std::vector<std::int32_t> right;
   for (std::size_t i = 0; i < truth.source.size(); ++i) {
@@ -139,7 +142,7 @@ MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
   }
   MapScore score;
   score.rows = static_cast<std::int64_t>(truth.source.size());
-  score.errors = scale.between(image, right, threads);
+  score.errors = scale.between(image, right, threads, progress);
   const auto answered = static_cast<double>(image.size());
   score.matched = truth.source.empty() ? 0.0 : answered / static_cast<double>(score.rows);
   score.mean_error =

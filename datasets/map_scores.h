@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "timbre/analysis/core/progress.h"
 #include "timbre/analysis/mesh/triangle_mesh.h"
 #include "timbre/datasets/truth.h"
 
@@ -27,9 +28,10 @@ class ErrorScale {
 
   /// The distance from each `from` to its `to`; 100 between components.
   /// @param threads  0: all cores; the result does not depend on it
-  /// @throws Error  bad_request for what is no vertex
+  /// @throws Error  bad_request for what is no vertex; cancelled
   [[nodiscard]] std::vector<double> between(std::span<const std::int32_t> from,
-                                            std::span<const std::int32_t> to, int threads) const;
+                                            std::span<const std::int32_t> to, int threads,
+                                            const Progress& progress = {}) const;
 
  private:
   struct Impl;
@@ -51,10 +53,12 @@ struct MapScore {
 };
 
 /// @param map  an image for each vertex of the source, -1 = unmatched
-/// @throws Error  bad_request if the map is too short for the truth or leads to no vertex
+/// @throws Error  bad_request if the map is too short for the truth or leads to no vertex;
+/// cancelled
 /// @see Kim, Lipman and Funkhouser 2011, section 8 (curves of errors)
 [[nodiscard]] MapScore score_map(const std::vector<std::int32_t>& map, const Truth& truth,
-                                 const ErrorScale& scale, int threads);
+                                 const ErrorScale& scale, int threads,
+                                 const Progress& progress = {});
 
 /// A symmetry counts a row as right within sqrt(area / (20 pi)), and itself where more than
 /// three quarters of the rows count.

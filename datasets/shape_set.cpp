@@ -14,6 +14,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/datasets/detail/vert_tri.h"
 #include "timbre/datasets/detail/word_lines.h"
 #include "timbre/datasets/random.h"
 
@@ -41,27 +42,34 @@ bool is_mesh_name(const std::string& name) {
                      [&](const char* ending) { return plain.ends_with(ending); });
 }
 
+// The digits from `at` on, without leading zeros; `at` moves behind them.
+std::string_view take_number(std::string_view text, std::size_t& at) {
+  const std::size_t first = std::min(text.find_first_not_of('0', at), text.size());
+  at = first;
+  while (at < text.size() && is_digit(text[at])) ++at;
+  return text.substr(first, at - first);
+}
+
 // cat2 before cat10.
 bool comes_before(const std::string& a, const std::string& b) {
-  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size(); ++i, ++j) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
     if (is_digit(a[i]) && is_digit(b[j])) {
-      const auto run = [](const std::string& text, std::size_t& at) {
-        const std::size_t first = std::min(text.find_first_not_of('0', at), text.size());
-        at = first;
-        while (at < text.size() && is_digit(text[at])) ++at;
-        return text.substr(first, at - first);
-      };
-      const std::string left = run(a, i);
-      const std::string right = run(b, j);
+      const std::string_view left = take_number(a, i);
+      const std::string_view right = take_number(b, j);
       if (left.size() != right.size()) return left.size() < right.size();
       if (left != right) return left < right;
-      --i;
-      --j;
-    } else if (a[i] != b[j]) {
-      return a[i] < b[j];
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
     }
   }
-  return a.size() != b.size() ? a.size() < b.size() : a < b;
+  const bool a_ends = i == a.size();
+  const bool b_ends = j == b.size();
+  if (a_ends != b_ends) return a_ends;
+  return a < b;  // alike but for leading zeros
 }
 
 // Of files; what is a folder or a device is no mesh, whatever its name.
@@ -316,63 +324,6 @@ void make_pairs(ShapeSet& set) {
   }
 }
 
-double number_in(const detail::WordLines& line, std::size_t column) {
-  const std::optional<double> value = parse_double(line.words()[column]);
-  if (!value) line.refuse("'" + line.word(column) + "' is not a number");
-  return *value;
-}
-
-// A line of three, or an end.
-bool next_triple(detail::WordLines& line) {
-  if (!line.next()) return false;
-  if (line.words().size() != 3) line.refuse("three numbers are wanted");
-  return true;
-}
-
-Points read_points(const std::string& file) {
-  std::vector<double> values;
-  for (detail::WordLines line(file); next_triple(line);) {
-    for (std::size_t c = 0; c < 3; ++c) values.push_back(number_in(line, c));
-  }
-  if (values.empty()) throw Error(ErrorKind::bad_input, file, "", "holds no point");
-  return Eigen::Map<const Points>(values.data(), std::ssize(values) / 3, 3);
-}
-
-Faces read_triangles(const std::string& file, std::int64_t vertices) {
-  std::vector<std::int32_t> corners;
-  for (detail::WordLines line(file); next_triple(line);) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      // Some copies write 1.0.
-      const double v = number_in(line, c);
-      if (!(v >= 1.0 && v <= static_cast<double>(vertices)) || v != std::floor(v)) {
-        line.refuse("'" + line.word(c) + "' is no vertex; they count from 1 to " +
-                    std::to_string(vertices));
-      }
-      corners.push_back(static_cast<std::int32_t>(v) - 1);
-    }
-  }
-  return Eigen::Map<const Faces>(corners.data(), std::ssize(corners) / 3, 3);
-}
-
-MeshFile read_vert_tri(const std::string& file, const ReadOptions& options) {
-  const std::string triangles = fs::path(file).replace_extension(".tri").string();
-  for (const std::string& part : {file, triangles}) {
-    std::error_code failure;
-    if (fs::file_size(part, failure) > options.size_limit && !failure) {
-      throw Error(ErrorKind::bad_input, part, "size",
-                  "larger than the limit of " + std::to_string(options.size_limit) + " bytes");
-    }
-  }
-  MeshFile result;
-  result.format = "vert";
-  result.mesh.vertices = read_points(file);
-  if (result.mesh.vertices.rows() > std::numeric_limits<std::int32_t>::max()) {
-    throw Error(ErrorKind::bad_input, file, "", "holds more points than can be numbered");
-  }
-  result.mesh.faces = read_triangles(triangles, result.mesh.vertices.rows());
-  return result;
-}
-
 // The names in the first line of symmetry.txt.
 void read_symmetry_columns(ShapeSet& set) {
   const std::string table = (fs::path(set.folder) / "symmetry.txt").string();
@@ -434,7 +385,7 @@ const SetShape& find_shape(const ShapeSet& set, const std::string& name) {
 }
 
 MeshFile read_set_mesh(const std::string& file, const ReadOptions& options) {
-  return file.ends_with(".vert") ? read_vert_tri(file, options) : read_mesh(file, options);
+  return file.ends_with(".vert") ? detail::read_vert_tri(file, options) : read_mesh(file, options);
 }
 
 }  // namespace timbre

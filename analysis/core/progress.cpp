@@ -18,4 +18,23 @@ void ProgressReporter::advance_to(std::int64_t done) {
   if (!progress_(step_)) throw Error(ErrorKind::cancelled, "", step_.phase, "stopped on request");
 }
 
+SharedProgress::SharedProgress(Progress progress, std::string phase, std::int64_t total)
+    : reporter_(std::move(progress), phase, total), phase_(std::move(phase)) {}
+
+void SharedProgress::tell() {
+  if (cancelled_) throw Error(ErrorKind::cancelled, "", phase_, "stopped on request");
+  if (std::this_thread::get_id() != caller_) return;
+  try {
+    reporter_.advance_to(done_);
+  } catch (...) {
+    cancelled_ = true;
+    throw;
+  }
+}
+
+void SharedProgress::finish_one() {
+  ++done_;
+  tell();
+}
+
 }  // namespace timbre

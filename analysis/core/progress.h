@@ -1,9 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <thread>
 
 namespace timbre {
 
@@ -31,6 +33,26 @@ class ProgressReporter {
   Progress progress_;
   ProgressStep step_;
   std::chrono::steady_clock::time_point last_{};
+};
+
+/// The same for work that several threads share: any of them may count and ask whether to
+/// stop; the `Progress` is called on the thread that made the object.
+class SharedProgress {
+ public:
+  SharedProgress(Progress progress, std::string phase, std::int64_t total);
+
+  /// To be called now and then by each thread that works.
+  /// @throws Error  cancelled
+  void tell();
+  /// Counts one unit, and tells.
+  void finish_one();
+
+ private:
+  ProgressReporter reporter_;
+  std::string phase_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  std::atomic<std::int64_t> done_ = 0;
+  std::atomic<bool> cancelled_ = false;
 };
 
 }  // namespace timbre

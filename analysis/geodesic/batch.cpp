@@ -21,35 +21,6 @@ using SourceSets = std::span<const std::vector<std::int32_t>>;
 
 constexpr Index kBlockBytes = Index{64} << 20;
 
-// Progress of work on several threads, told by the caller's own.
-class SharedProgress {
- public:
-  SharedProgress(const Progress& progress, Index total) : reporter_(progress, "distances", total) {}
-
-  /// To be called now and then by any thread that works.
-  /// @throws Error  cancelled
-  void tell() {
-    if (cancelled_) throw Error(ErrorKind::cancelled, "", "distances", "stopped");
-    if (std::this_thread::get_id() != caller_) return;
-    try {
-      reporter_.advance_to(done_);
-    } catch (...) {
-      cancelled_ = true;
-      throw;
-    }
-  }
-  void finish_one() {
-    ++done_;
-    tell();
-  }
-
- private:
-  ProgressReporter reporter_;
-  std::thread::id caller_ = std::this_thread::get_id();
-  std::atomic<std::int64_t> done_ = 0;
-  std::atomic<bool> cancelled_ = false;
-};
-
 // Fills the columns of some source sets.
 class ColumnFiller {
  public:
@@ -159,7 +130,7 @@ void compute_distances(const TriangleMesh& mesh, SourceSets source_sets, const D
   require_sources(source_sets, n);
   const Index count = std::ssize(source_sets);
   if (count == 0) return;
-  SharedProgress progress(options.progress, count);
+  SharedProgress progress(options.progress, "distances", count);
   progress.tell();
   const std::unique_ptr<ColumnFiller> filler = make_filler(mesh, options);
   const Index threads = options.threads > 0 ? options.threads : hardware_threads();

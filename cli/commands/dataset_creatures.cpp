@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 #include "timbre/analysis/core/error.h"
@@ -29,23 +27,6 @@ struct Arguments {
   CreatureOptions options = {.variation = 0.25, .shuffle = true};
 };
 
-// Counts work done on any thread, and reports it from the caller's.
-class SharedProgress {
- public:
-  SharedProgress(const Progress& progress, const std::string& phase, std::size_t total)
-      : reporter_(progress, phase, static_cast<std::int64_t>(total)) {}
-
-  void advance() {
-    const std::int64_t done = ++done_;
-    if (std::this_thread::get_id() == caller_) reporter_.advance_to(done);
-  }
-
- private:
-  ProgressReporter reporter_;
-  std::atomic<std::int64_t> done_{0};
-  std::thread::id caller_ = std::this_thread::get_id();
-};
-
 void require_free_folder(const Context& context) {
   if (context.output == "-") {
     throw Error(ErrorKind::bad_request, "", "output", "a folder is needed, not standard output");
@@ -67,6 +48,8 @@ fs::path create_folder(const Context& context, CreatureSet set) {
   fs::create_directories(folder, failure);
   if (failure) throw Error(ErrorKind::io, folder.string(), "", failure.message());
   require_writable((folder / "labels.txt").string(), context.force);
+  // The list of what was there before would vouch for shapes that are half replaced.
+  fs::remove(folder / "labels.txt", failure);
   return folder;
 }
 
@@ -135,12 +118,11 @@ std::string pair_lines(const Arguments& args, CreatureSet set) {
 
 std::vector<CreatureBody> make_bodies(const Arguments& args, const Context& context) {
   std::vector<CreatureBody> bodies(args.species.size());
-  const Progress progress = context.progress();
-  SharedProgress shared(progress, "bodies", bodies.size());
+  SharedProgress shared(context.progress(), "bodies", static_cast<std::int64_t>(bodies.size()));
   parallel_for(static_cast<std::int64_t>(bodies.size()), context.threads, [&](std::int64_t i) {
     const auto at = static_cast<std::size_t>(i);
     bodies[at] = make_creature_body(args.species[at], args.options);
-    shared.advance();
+    shared.finish_one();
   });
   return bodies;
 }
@@ -171,15 +153,13 @@ nlohmann::json write_shape(const Task& task, const Arguments& args, const Contex
                        to_mesh_bytes(creature.mesh, mesh_formats().at(args.format)));
   context.write_result(stem + ".vts", lines_of(creature.vertex_of_template, 1));
   context.write_result(stem + ".parts", lines_of(creature.part, 0));
-  std::string truth = (folder / (name + ".vts")).string();
   if (task.set == CreatureSet::cut && task.pose > 0) {
     const Creature whole = make_creature(*task.body, task.set, 0, args.options);
     context.write_result(stem + ".map", lines_of(correspondence(creature, whole), 0));
-    truth = (folder / (name + ".map")).string();
   }
   return {{"file", (folder / (name + "." + args.format)).string()},
           {"set", to_word(task.set)},
-          {"truth", truth},
+          {"truth", (folder / (name + ".vts")).string()},
           {"species", creature.species},
           {"pose", creature.pose},
           {"vertices", creature.mesh.vertices.rows()},
@@ -190,12 +170,11 @@ std::vector<nlohmann::json> write_shapes(const Arguments& args, const Context& c
                                          const std::vector<CreatureBody>& bodies) {
   const std::vector<Task> tasks = tasks_of(args, bodies);
   std::vector<nlohmann::json> written(tasks.size());
-  const Progress progress = context.progress();
-  SharedProgress shared(progress, "shapes", written.size());
+  SharedProgress shared(context.progress(), "shapes", static_cast<std::int64_t>(written.size()));
   parallel_for(static_cast<std::int64_t>(written.size()), context.threads, [&](std::int64_t i) {
     const auto at = static_cast<std::size_t>(i);
     written[at] = write_shape(tasks[at], args, context);
-    shared.advance();
+    shared.finish_one();
   });
   return written;
 }
@@ -224,11 +203,13 @@ void make_creatures(const Arguments& args, const Context& context) {
   for (const CreatureSet set : args.sets) sets.emplace_back(to_word(set));
   require_distinct(sets, "sets");
   require_free_folder(context);
-  for (const CreatureSet set : args.sets) (void)create_folder(context, set);
+  std::vector<fs::path> folders;
+  for (const CreatureSet set : args.sets) folders.push_back(create_folder(context, set));
   const std::vector<CreatureBody> bodies = make_bodies(args, context);
   const std::vector<nlohmann::json> shapes = write_shapes(args, context, bodies);
-  for (const CreatureSet set : args.sets) {
-    const fs::path folder = create_folder(context, set);
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    const fs::path& folder = folders[i];
+    const CreatureSet set = args.sets[i];
     context.write_result((folder / "symmetry.txt").string(), symmetry_table(bodies));
     context.write_result((folder / "parts.txt").string(), part_table(bodies));
     context.write_result((folder / "pairs.txt").string(), pair_lines(args, set));

@@ -28,6 +28,12 @@ const char* to_prose(SetLayout layout) {
   }
 }
 
+// As `read_shape_set` pairs them.
+std::string who_pairs(const ShapeSet& set) {
+  const bool all = set.layout == SetLayout::faust || set.layout == SetLayout::plain;
+  return std::string(all ? "all shapes" : "shapes of one label") + ", in a fixed order";
+}
+
 void run(const std::string& folder, const Context& context) {
   const ShapeSet set = read_shape_set(folder);
   std::map<std::string, int> classes;
@@ -49,7 +55,7 @@ void run(const std::string& folder, const Context& context) {
     text += "  " + escape_control(label) + ": " + std::to_string(count) + "\n";
   }
   text += "pairs: " + std::to_string(set.pairs.size()) +
-          (set.pairs_listed ? " listed in pairs.txt\n" : " of the same label, in a fixed order\n");
+          (set.pairs_listed ? " listed in pairs.txt\n" : " made of " + who_pairs(set) + "\n");
   text += "symmetry known of " + std::to_string(symmetric) + "\n";
   nlohmann::json pairs = nlohmann::json::array();
   for (const auto& [source, target] : set.pairs) pairs.push_back({source, target});

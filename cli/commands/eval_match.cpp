@@ -158,15 +158,23 @@ std::string to_prose(const nlohmann::json& document, std::size_t pairs) {
   return text;
 }
 
-nlohmann::json parameters(const Arguments& args) {
+// Maps that are given were made by no method of ours.
+nlohmann::json method_of(const Arguments& args) {
+  if (!args.judge.maps.empty() || args.inputs.size() > 1) return {};
+  return args.judge.method == MatchMethod::tensor ? "tensor" : "functional";
+}
+
+nlohmann::json parameters(const Arguments& args, const Context& context) {
   return {
       {"set", args.inputs.front()},
       {"kind", args.judge.kind == TruthKind::map ? "map" : "sym"},
       {"geodesic", args.judge.geodesic == GeodesicKind::exact ? "exact" : "graph"},
       {"maps", args.judge.maps.empty() ? nlohmann::json() : nlohmann::json(args.judge.maps)},
       {"save_maps", args.judge.save.empty() ? nlohmann::json() : nlohmann::json(args.judge.save)},
-      {"method", args.judge.method == MatchMethod::tensor ? "tensor" : "functional"},
+      {"method", method_of(args)},
       {"count", args.judge.count},
+      {"samples", args.judge.samples},
+      {"soup", context.read.soup},
       {"version", version_text()}};
 }
 
@@ -189,6 +197,7 @@ bool is_whole(const nlohmann::json& result) {
                   holds("found", &nlohmann::json::is_boolean) && result.contains("flipped") &&
                   (result["flipped"].is_boolean() || result["flipped"].is_null()) &&
                   holds("pck", &nlohmann::json::is_array) && result["pck"].size() == kCurvePoints;
+  is_right = is_right && (!result.contains("verdict") || result["verdict"].is_string());
   for (const char* field : {"below5", "matched", "right"}) {
     is_right = is_right && holds(field, &nlohmann::json::is_number);
   }
@@ -202,15 +211,18 @@ std::vector<nlohmann::json> judge_set(const Arguments& args, const Context& cont
   create_map_folder(args.judge.save);
   std::optional<ResultLog> log;
   if (!context.output.empty()) {
-    log.emplace(context.output, parameters(args), context.force);
+    log.emplace(context.output, parameters(args, context), context.force);
     if (log->kept() > 0) {
       context.note(escape_control(context.output) + ": goes on after " +
                    std::to_string(log->kept()) + " results");
     }
   }
-  MapJudge judge(args.judge, context);
+  JudgeOptions options = args.judge;
+  options.goes_on = log && log->was_there();
+  MapJudge judge(options, context);
   std::vector<nlohmann::json> pairs;
   for (const auto& [source, target] : work) {
+    if (interrupted()) throw Error(ErrorKind::cancelled, "", "maps", "stopped on request");
     const std::string key = (std::filesystem::path(source) / target).string();
     std::optional<nlohmann::json> known = log ? log->find(key) : std::nullopt;
     if (known && !is_whole(*known)) {
@@ -262,8 +274,8 @@ void run(const Arguments& args, Context& context) {
         to_json(MapJudge(args.judge, context).judge_file(source, target, args.inputs.back())));
   }
   nlohmann::json document = summary(pairs, args.judge.kind);
-  document["geodesic"] = parameters(args)["geodesic"];
-  document["method"] = parameters(args)["method"];
+  document["geodesic"] = parameters(args, context)["geodesic"];
+  document["method"] = method_of(args);
   context.answer(document, (is_set(args) ? "" : escape_control(row(pairs[0])) + "\n") +
                                to_prose(document, pairs.size()));
 }
@@ -313,7 +325,8 @@ void add_eval_match(CLI::App& eval, Context& context) {
       ->description("log of a set, a line for each pair; an interrupted run goes on from it");
   command.footer(
       "Error: mean geodesic distance on the target to the right vertex, over the square root of\n"
-      "the target's area, times 100. Found: a mean below 5, every row of the truth answered.\n"
+      "the target's area, times 100. Found: a mean below 5, every row of the truth answered (nine\n"
+      "tenths for parts).\n"
       "Example:\n  timbre eval match creatures/remeshed -n 20 -o creatures.jsonl");
   command.callback([args, &context] { run(*args, context); });
 }

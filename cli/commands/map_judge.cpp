@@ -116,7 +116,7 @@ Judged MapJudge::judge_pair(const ShapeSet& set, const std::string& source,
   const Truth truth = truth_of(set, a, A, b, B);
   Judged judged{source, target, {}, {}, nlohmann::json::object()};
   if (!options_.save.empty()) {
-    require_writable(map_file(options_.save, source, target), context_.force);
+    require_writable(map_file(options_.save, source, target), replaces_maps());
   }
   Stopwatch watch;
   const bool is_given = !options_.maps.empty();
@@ -124,10 +124,10 @@ Judged MapJudge::judge_pair(const ShapeSet& set, const std::string& source,
       is_given ? listed_map(context_, map_file(options_.maps, source, target), A, B)
                : compute(a, A, b, B, judged.made);
   if (!is_given) judged.made["seconds"] = watch.lap();
-  if (!options_.save.empty()) {
-    context_.write_result(map_file(options_.save, source, target), to_lines(map));
-  }
   for_file(b.file, [&] { compare(map, truth, set, b, B, judged); });
+  if (!options_.save.empty()) {
+    write_file(map_file(options_.save, source, target), to_lines(map), replaces_maps());
+  }
   return judged;
 }
 
@@ -147,12 +147,13 @@ void MapJudge::compare(const std::vector<std::int32_t>& map, const Truth& known,
   const ErrorScale scale(B, options_.geodesic);
   const Truth truth =
       options_.samples == 0 ? known : sampled(known, static_cast<std::size_t>(options_.samples));
-  judged.score = score_map(map, truth, scale, context_.threads);
+  judged.score = score_map(map, truth, scale, context_.threads, context_.progress());
   if (options_.kind != TruthKind::map || !has_symmetry_truth(set, target)) return;
   const Truth opposite =
       mirrored(truth, symmetry_truth(set, target, B.vertices.rows()), B.vertices.rows());
   if (opposite.source.empty()) return;
-  judged.mirrored_error = score_map(map, opposite, scale, context_.threads).mean_error;
+  judged.mirrored_error =
+      score_map(map, opposite, scale, context_.threads, context_.progress()).mean_error;
 }
 
 std::string MapJudge::map_file(const std::string& folder, const std::string& source,
@@ -194,7 +195,8 @@ std::vector<std::int32_t> MapJudge::compute(const SetShape& a, const TriangleMes
   }
   const MatchSurface& to = surface(b, B);
   if (options_.method == MatchMethod::functional) {
-    return match_by_descriptors(from, to, {.threads = context_.threads});
+    return match_by_descriptors(from, to,
+                                {.threads = context_.threads, .progress = context_.progress()});
   }
   MatchResult result =
       match(from, to, {.threads = context_.threads, .progress = context_.progress()});

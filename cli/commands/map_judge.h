@@ -22,11 +22,12 @@ struct JudgeOptions {
   TruthKind kind = TruthKind::map;
   MatchMethod method = MatchMethod::tensor;
   GeodesicKind geodesic = GeodesicKind::exact;
-  int count = 200;    ///< eigenfunctions
-  int samples = 0;    ///< rows of the truth that are judged; 0: all
-  std::string maps;   ///< folder of maps to judge; empty: compute them
-  std::string truth;  ///< of one map; empty: what lies beside the meshes
-  std::string save;   ///< folder for the maps that are computed; empty: they are not kept
+  int count = 200;       ///< eigenfunctions
+  int samples = 0;       ///< rows of the truth that are judged; 0: all
+  std::string maps;      ///< folder of maps to judge; empty: compute them
+  std::string truth;     ///< of one map; empty: what lies beside the meshes
+  std::string save;      ///< folder for the maps that are computed; empty: they are not kept
+  bool goes_on = false;  ///< a run that was interrupted may have left maps there
 };
 
 /// A map, compared with the truth.
@@ -54,6 +55,7 @@ class MapJudge {
                                   const std::string& target);
 
  private:
+  [[nodiscard]] bool replaces_maps() const { return context_.force || options_.goes_on; }
   [[nodiscard]] TriangleMesh load(const std::string& file) const;
   [[nodiscard]] Truth truth_of(const ShapeSet& set, const SetShape& a, const TriangleMesh& A,
                                const SetShape& b, const TriangleMesh& B) const;

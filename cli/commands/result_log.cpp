@@ -20,8 +20,8 @@ namespace {
   throw Error(ErrorKind::io, path, what, std::generic_category().message(errno));
 }
 
-// JSON holds UTF-8, file names any bytes. Text of a log has each byte that is no plain
-// character as \xNN: of two names no two are the same.
+// JSON holds UTF-8, file names any bytes. Keys have each byte that is no plain character as
+// \xNN: no two names give the same.
 std::string plain(const std::string& text) {
   constexpr char kHex[] = "0123456789abcdef";
   std::string out;
@@ -63,6 +63,8 @@ ResultLog::ResultLog(std::string path, const nlohmann::json& parameters, bool fo
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
       throw Error(ErrorKind::bad_request, path_, "", "another run is writing to it");
     }
+    // Once more: a run that has just ended may have written to it.
+    if (::fstat(file_, &about) != 0) refuse(path_, "open");
     if (about.st_size == 0) {
       write_line(parameters);
     } else {
@@ -106,6 +108,7 @@ void ResultLog::read(const nlohmann::json& parameters, bool force) {
   }
   if (::ftruncate(file_, static_cast<off_t>(whole)) != 0) refuse(path_, "write");
   if (::lseek(file_, 0, SEEK_END) < 0) refuse(path_, "write");
+  was_there_ = whole > 0;
   if (whole == 0) write_line(parameters);
 }
 

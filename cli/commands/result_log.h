@@ -20,6 +20,8 @@ class ResultLog {
   ResultLog& operator=(const ResultLog&) = delete;
 
   [[nodiscard]] std::size_t kept() const { return known_.size(); }
+  /// Whether an earlier run with these parameters began it.
+  [[nodiscard]] bool was_there() const { return was_there_; }
   [[nodiscard]] std::optional<nlohmann::json> find(const std::string& key) const;
 
   /// The line is on the disk when this returns.
@@ -33,6 +35,7 @@ class ResultLog {
   std::string path_;
   std::map<std::string, nlohmann::json> known_;
   int file_ = -1;
+  bool was_there_ = false;
 };
 
 }  // namespace timbre::cli

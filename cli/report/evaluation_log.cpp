@@ -39,10 +39,12 @@ EvaluationLog header_of(const Json& line) {
   EvaluationLog log;
   log.set = line.at("set").get<std::string>();
   log.kind = line.at("kind").get<std::string>();
-  log.method = line.at("method").get<std::string>();
+  log.method = optional_of<std::string>(line, "method").value_or("");
+  log.maps_folder = optional_of<std::string>(line, "maps").value_or("");
   log.geodesic = line.at("geodesic").get<std::string>();
   log.version = line.at("version").get<std::string>();
   log.count = line.at("count").get<int>();
+  log.samples = line.at("samples").get<int>();
   return log;
 }
 

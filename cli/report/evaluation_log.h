@@ -20,8 +20,11 @@ struct EvaluatedMap {
 };
 
 struct EvaluationLog {
-  std::string set, kind, method, geodesic, version;
-  int count = 0;  ///< eigenfunctions
+  std::string set, kind, geodesic, version;
+  std::string method;       ///< empty for maps that were given
+  std::string maps_folder;  ///< of maps that were given; empty: they were computed
+  int count = 0;            ///< eigenfunctions
+  int samples = 0;          ///< rows judged of each; 0: all
   std::vector<EvaluatedMap> maps;
 };
 

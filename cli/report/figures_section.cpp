@@ -95,9 +95,11 @@ std::string eval_command(const EvaluationLog& log) {
   std::string words = "timbre eval match " +
                       shell_word(folder.is_absolute() ? folder.filename().string() : log.set);
   if (log.kind == "sym") words += " --kind sym";
-  if (log.method != "tensor") words += " --method " + shell_word(log.method);
+  if (!log.maps_folder.empty()) words += " --maps " + shell_word(log.maps_folder);
+  if (log.method == "functional") words += " --method functional";
   if (log.geodesic != "exact") words += " --geodesic " + shell_word(log.geodesic);
   if (log.count != 200) words += " -k " + std::to_string(log.count);
+  if (log.samples != 0) words += " --samples " + std::to_string(log.samples);
   return words + " -n " + std::to_string(log.maps.size());
 }
 
@@ -118,7 +120,8 @@ std::string matching(const Material& material) {
                    number(means.seconds, 1)};
   return element("h3", "Matching") +
          element("p",
-                 "A map is found if its mean error is below 5 and every point has an answer; "
+                 "A map is found if its mean error is below 5 and every point has an answer (nine "
+                 "tenths, for parts); "
                  "flipped, if it fits the truth better with left and right exchanged.") +
          table("Maps between poses", head, {row}) + command_line(eval_command(*material.matches));
 }

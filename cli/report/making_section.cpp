@@ -34,6 +34,7 @@ std::string own_command(const ReportInputs& inputs) {
   add("--maps", inputs.maps);
   add("--symmetries", inputs.symmetries);
   add("--symmetry-maps", inputs.symmetry_maps);
+  if (!inputs.title.empty()) words += " --title " + shell_word(inputs.title);
   return words;
 }
 

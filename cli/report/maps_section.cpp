@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
@@ -29,7 +30,7 @@ struct Pair {
 };
 
 std::string map_file(const Material& material, const EvaluatedMap& result) {
-  const std::string name = stem_of(result.source) + "_" + stem_of(result.target) + ".txt";
+  const std::string name = shape_stem(result.source) + "_" + shape_stem(result.target) + ".txt";
   return (std::filesystem::path(material.inputs.maps) / name).string();
 }
 
@@ -90,9 +91,9 @@ std::string shown(Material& material, const TriangleMesh& mesh, const VertexColo
 }
 
 std::string pair_figures(Material& material, const Pair& pair) {
-  return shown(material, pair.source, pair.source_colours, stem_of(pair.result.source),
+  return shown(material, pair.source, pair.source_colours, shape_stem(pair.result.source),
                "coloured by position", "coloured by position") +
-         shown(material, pair.target, pair.target_colours, stem_of(pair.result.target),
+         shown(material, pair.target, pair.target_colours, shape_stem(pair.result.target),
                "in colours brought by the map", "colours brought by the map");
 }
 
@@ -105,19 +106,19 @@ std::string error_strip() {
 }
 
 std::string pair_html(Material& material, const Pair& pair, bool is_first) {
-  const std::string heading = escape_html(stem_of(pair.result.source)) + " \u2192 " +
-                              escape_html(stem_of(pair.result.target));
+  const std::string heading = escape_html(shape_stem(pair.result.source)) + " \u2192 " +
+                              escape_html(shape_stem(pair.result.target));
   std::string html =
       element("h3", heading) + element("p", {{"class", "verdict"}}, verdict_of(pair.result));
   const std::string pictures = pair_figures(material, pair);
   const VertexColours errors = error_colours(material, pair);
   const std::string wrong =
       errors.rows() == 0 ? ""
-                         : shown(material, pair.target, errors, stem_of(pair.result.target),
+                         : shown(material, pair.target, errors, shape_stem(pair.result.target),
                                  "coloured by the error of the map", "how far off the map is");
   if (!is_first) return html + element("div", {{"class", "cards three"}}, pictures + wrong);
-  html += viewer({pair.source, pair.source_colours, stem_of(pair.result.source)},
-                 {pair.target, pair.target_colours, stem_of(pair.result.target)}, pair.map,
+  html += viewer({pair.source, pair.source_colours, shape_stem(pair.result.source)},
+                 {pair.target, pair.target_colours, shape_stem(pair.result.target)}, pair.map,
                  material.inputs.pictures.up, element("div", {{"class", "cards two"}}, pictures));
   if (wrong.empty()) return html;
   return html + element("div", {{"class", "beside"}},
@@ -167,7 +168,8 @@ std::string maps_section(Material& material) {
   for (const EvaluatedMap& result : material.matches->maps) {
     if (material.inputs.maps.empty() || count == kMostPairs) break;
     // A log may be longer than the folder of maps that were kept.
-    if (!std::filesystem::exists(map_file(material, result))) continue;
+    std::error_code failure;
+    if (!std::filesystem::exists(map_file(material, result), failure)) continue;
     pairs += pair_html(material, load_pair(material, result), count == 0);
     ++count;
   }

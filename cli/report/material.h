@@ -35,9 +35,6 @@ struct Material {
 /// The first shapes of the database, at most `count`.
 [[nodiscard]] std::vector<ShapeInfo> first_shapes(const Material& material, std::size_t count);
 
-/// A name without its ending.
-[[nodiscard]] std::string stem_of(const std::string& file);
-
 // The sections, in the order of the page; empty where there is nothing to show.
 [[nodiscard]] std::string header_section(Material& material, const std::string& title);
 [[nodiscard]] std::string gallery_section(Material& material);

@@ -51,18 +51,16 @@ Material gather(const ReportInputs& inputs) {
 
 std::string title_of(const ReportInputs& inputs) {
   if (!inputs.title.empty()) return inputs.title;
-  return "The sound of " + stem_of(std::filesystem::path(inputs.database).filename().string());
+  return "The sound of " + std::filesystem::path(inputs.database).stem().string();
 }
 
 }  // namespace
 
-std::string stem_of(const std::string& file) { return file.substr(0, file.find_last_of('.')); }
-
 TriangleMesh mesh_of(const Material& material, const std::string& file) {
   if (material.set) return read_set_mesh(find_shape(*material.set, file).file).mesh;
-  if (material.store.find(stem_of(file))) return material.store.mesh(stem_of(file));
+  if (material.store.find(shape_stem(file))) return material.store.mesh(shape_stem(file));
   throw Error(ErrorKind::bad_input, material.store.location(), "",
-              "has no shape '" + stem_of(file) + "', which a log names; give --set FOLDER");
+              "has no shape '" + shape_stem(file) + "', which a log names; give --set FOLDER");
 }
 
 std::vector<ShapeInfo> first_shapes(const Material& material, std::size_t count) {

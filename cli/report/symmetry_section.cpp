@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/analysis/mesh/sampling.h"
@@ -20,7 +21,8 @@ constexpr std::size_t kMarks = 4;
 using VertexMap = std::vector<std::int32_t>;
 
 std::string map_file(const Material& material, const EvaluatedMap& result) {
-  return (std::filesystem::path(material.inputs.symmetry_maps) / (stem_of(result.source) + ".txt"))
+  return (std::filesystem::path(material.inputs.symmetry_maps) /
+          (shape_stem(result.source) + ".txt"))
       .string();
 }
 
@@ -76,7 +78,7 @@ std::string shape_html(Material& material, const EvaluatedMap& result) {
     look.colours = shared_colours(mesh, map, material.inputs.pictures.up);
   });
   look.markers = marked_pairs(mesh, map);
-  const std::string name = stem_of(result.source);
+  const std::string name = shape_stem(result.source);
   std::string words =
       result.error ? "mean error " + to_text(*result.error, 2) : "no symmetry found";
   if (result.seconds) words += ", " + to_short_text(*result.seconds, 2) + " s";
@@ -96,7 +98,8 @@ std::string symmetry_section(Material& material) {
   std::size_t count = 0;
   for (const EvaluatedMap& result : material.symmetries->maps) {
     if (count == kMostShapes) break;
-    if (!std::filesystem::exists(map_file(material, result))) continue;
+    std::error_code failure;
+    if (!std::filesystem::exists(map_file(material, result), failure)) continue;
     shapes += shape_html(material, result);
     ++count;
   }

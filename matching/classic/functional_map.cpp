@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/analysis/core/progress.h"
 #include "timbre/analysis/signatures/wave_kernel.h"
 #include "timbre/matching/detail/stages.h"
 
@@ -79,9 +80,12 @@ PointMap match_by_descriptors(const MatchSurface& A, const MatchSurface& B,
   }
   sizes.insert(sizes.end(), detail::kVertexSizes.begin(), detail::kVertexSizes.end());
   sizes.insert(sizes.begin(), static_cast<int>(k));
+  ProgressReporter reporter(options.progress, "matching", 2);
   maps =
       zoom_out_to_vertices(A, B, std::move(maps), sizes, detail::kVertexSamples, options.threads);
+  reporter.advance();
   const DenseMaps dense = refine_densely(A, B, std::move(maps), kSteps, 1, options.threads);
+  reporter.advance();
   return between_files(A, B, dense.points.ab);
 }
 

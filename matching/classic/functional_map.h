@@ -10,6 +10,7 @@ struct DescriptorMapOptions {
   int energies = 100;       ///< columns of the wave kernel signature
   double laplacian = 0.01;  ///< how much commuting with the Laplacian counts
   int threads = 0;          ///< 0: all cores; the result does not depend on it
+  Progress progress = {};
 };
 
 /// The usual functional map, to compare with: wave kernel signatures on both shapes, the map

@@ -214,17 +214,14 @@ TriangleMesh weld_contact(const TriangleMesh& mesh) {
   }
   TriangleMesh welded = mesh;
   welded.faces.conservativeResize(mesh.faces.rows() + 4, 3);
-  const std::array<Index, 6> rows = {near,
-                                     far,
-                                     mesh.faces.rows(),
-                                     mesh.faces.rows() + 1,
-                                     mesh.faces.rows() + 2,
-                                     mesh.faces.rows() + 3};
+  // Two triangles for each side of the bridge: in place of the two that go, and behind the last.
+  const Index last = mesh.faces.rows();
+  const std::array<std::array<Index, 2>, 3> rows = {
+      {{near, far}, {last, last + 1}, {last + 2, last + 3}}};
   for (int i = 0; i < 3; ++i) {
-    const int next = a[(i + 1) % 3];
-    welded.faces.row(rows[static_cast<std::size_t>(2 * i)]) << a[i], next, opposite(i + 1, best);
-    welded.faces.row(rows[static_cast<std::size_t>(2 * i + 1)]) << a[i], opposite(i + 1, best),
-        opposite(i, best);
+    const auto& [first, second] = rows[static_cast<std::size_t>(i)];
+    welded.faces.row(first) << a[i], a[(i + 1) % 3], opposite(i + 1, best);
+    welded.faces.row(second) << a[i], opposite(i + 1, best), opposite(i, best);
   }
   return welded;
 }

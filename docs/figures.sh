@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures what README and docs claim about the creatures: docs/figures.sh FOLDER
-# Takes about half an hour on two cores; interrupted, it goes on where it stopped.
+# Takes about a quarter of an hour on two cores; interrupted, it goes on where it stopped.
 set -euo pipefail
 timbre=$(cd "$(dirname "$0")/.." && pwd)/build/release/cli/timbre
 mkdir -p "$1"
@@ -18,5 +18,6 @@ printf '\nMaps of timbre match, first 40 pairs:\n'
 "$timbre" eval match remeshed -n 40 -o tensor.jsonl
 printf '\nDescriptors and ZoomOut alone, the same pairs:\n'
 "$timbre" eval match remeshed -n 40 -o functional.jsonl --method functional --samples 500
-printf '\nSymmetries of all shapes:\n'
-"$timbre" eval match remeshed --kind sym -o symmetry.jsonl
+printf '\nSymmetries, two shapes of each species:\n'
+[ -f two/remeshed/labels.txt ] || "$timbre" dataset make creatures -o two --sets remeshed --poses 2
+"$timbre" eval match two/remeshed --kind sym -o symmetry.jsonl

@@ -43,7 +43,7 @@ void require_free_folder(const Context& context) {
 }
 
 fs::path create_folder(const Context& context, CreatureSet set) {
-  const fs::path folder = fs::path(context.output) / to_word(set);
+  fs::path folder = fs::path(context.output) / to_word(set);
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw Error(ErrorKind::io, folder.string(), "", failure.message());

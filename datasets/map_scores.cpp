@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"

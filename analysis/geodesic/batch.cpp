@@ -1,11 +1,9 @@
 #include "timbre/analysis/geodesic/batch.h"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/threads.h"

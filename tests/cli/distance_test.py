@@ -10,14 +10,15 @@ import signal
 import struct
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import zipfile
 
+import command_test
 import shapes
 
 TIMBRE = os.path.abspath(sys.argv.pop(1))
+command_test.CommandTest.TIMBRE = TIMBRE
 
 
 def square_off(n):
@@ -38,27 +39,13 @@ def read_npy(data):
     return data[10:10 + size].decode(), struct.unpack(f"<{len(body) // 8}d", body)
 
 
-class Distance(unittest.TestCase):
+class Distance(command_test.CommandTest):
     def setUp(self):
-        self.keep = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self.keep.name)
+        super().setUp()
         self.mesh = self.put("square.off", square_off(8))
 
-    def tearDown(self):
-        self.keep.cleanup()
-
-    def put(self, name, text):
-        path = self.folder / name
-        path.write_text(text, encoding="ascii")
-        return str(path)
-
-    def path(self, name):
-        return str(self.folder / name)
-
-    def run_timbre(self, *args, code=0, **options):
-        done = subprocess.run([TIMBRE, "distance", *args], capture_output=True, **options)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+    def run_timbre(self, *args, **options):
+        return super().run_timbre("distance", *args, **options)
 
     def refuse(self, *args, code=1, words=""):
         done = self.run_timbre(*args, code=code)

@@ -6,14 +6,14 @@ import json
 import os
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
 import unittest
 
+import command_test
 import shapes
 
 TIMBRE = sys.argv.pop(1)
+command_test.CommandTest.TIMBRE = TIMBRE
 VERTICES = 112
 
 
@@ -24,28 +24,11 @@ def npy(kind, shape, data):
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + struct.pack(f"<{len(data)}{code}", *data)
 
 
-class Render(unittest.TestCase):
+class Render(command_test.CommandTest):
     def setUp(self):
-        self.keep = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self.keep.name)
+        super().setUp()
         self.mesh = self.put("torus.off", shapes.torus_off(2.0, 0.7))
         self.out = self.path("a.png")
-
-    def tearDown(self):
-        self.keep.cleanup()
-
-    def put(self, name, content):
-        path = self.folder / name
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return str(path)
-
-    def path(self, name):
-        return str(self.folder / name)
-
-    def run_timbre(self, *args, code=0, **options):
-        done = subprocess.run([TIMBRE, *args], capture_output=True, **options)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
 
     def render(self, *args, size="64"):
         """The bytes of a picture."""

@@ -9,41 +9,25 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import zipfile
 
+import command_test
 import shapes
 
 TIMBRE = sys.argv.pop(1)
+command_test.CommandTest.TIMBRE = TIMBRE
 AS_ROOT = os.geteuid() == 0
 
 
-class Results(unittest.TestCase):
+class Results(command_test.CommandTest):
     def setUp(self):
-        self.keep = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self.keep.name)
+        super().setUp()
         self.mesh = self.put("torus.off", shapes.torus_off(2.0, 0.7))
-
-    def tearDown(self):
-        self.keep.cleanup()
-
-    def put(self, name, text):
-        path = self.folder / name
-        path.write_text(text, encoding="ascii")
-        return str(path)
-
-    def path(self, name):
-        return str(self.folder / name)
 
     def names(self):
         return sorted(os.listdir(self.folder))
-
-    def run_timbre(self, *args, code=0, **options):
-        done = subprocess.run([TIMBRE, *args], capture_output=True, **options)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
 
     def refuse(self, *args, code=2, words=""):
         """Expects one line on standard error, and nothing else."""

@@ -8,11 +8,19 @@
 namespace timbre::cli {
 
 void add_operator_options(CLI::App& command, OperatorOptions& options) {
-  add_word_option(command, "--operator", options.kind, {{"cotan", OperatorKind::cotan}},
-                  "the Laplacian");
+  std::map<std::string, OperatorKind> kinds;
+  for (const OperatorKind kind : kOperatorKinds) kinds[to_word(kind)] = kind;
+  add_word_option(command, "--operator", options.kind, kinds, "the Laplacian");
   add_word_option(command, "--mass", options.mass,
                   {{"lumped", MassKind::lumped}, {"consistent", MassKind::consistent}},
-                  "mass matrix");
+                  "mass matrix of robust and cotan; lumped if not given");
+}
+
+void add_boundary_option(CLI::App& command, OperatorOptions& options) {
+  add_word_option(
+      command, "--boundary", options.boundary,
+      {{"neumann", BoundaryKind::neumann}, {"dirichlet", BoundaryKind::dirichlet}},
+      "at edges of one triangle: neumann, nothing flows out; dirichlet, functions are 0");
 }
 
 void add_up_option(CLI::App& command, UpAxis& up) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,23 @@ namespace timbre::cli {
 
 // Options that mean the same in every command.
 
+/// What words stand for where the value may also be absent.
+template <typename Value>
+struct WordMeaning {
+  using Type = Value;
+};
+template <typename Value>
+struct WordMeaning<std::optional<Value>> {
+  using Type = Value;
+};
+
 /// An option whose values are words; without it `value` stays what it is, and --help shows that.
 /// (CLI11's own transformers print the numbers behind the words, those of one byte as
 /// characters.)
-template <typename Enum>
-CLI::Option* add_word_option(CLI::App& command, const std::string& name, Enum& value,
-                             const std::map<std::string, Enum>& words, const std::string& about) {
+template <typename Value>
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, Value& value,
+                             const std::map<std::string, typename WordMeaning<Value>::Type>& words,
+                             const std::string& about) {
   std::vector<std::string> known;
   std::string standard;
   for (const auto& [word, meaning] : words) {
@@ -33,6 +45,9 @@ CLI::Option* add_word_option(CLI::App& command, const std::string& name, Enum& v
 
 /// --operator and --mass.
 void add_operator_options(CLI::App& command, OperatorOptions& options);
+
+/// --boundary.
+void add_boundary_option(CLI::App& command, OperatorOptions& options);
 
 /// --up: which axis of the meshes points up in pictures.
 void add_up_option(CLI::App& command, UpAxis& up);

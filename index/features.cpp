@@ -8,8 +8,8 @@ ShapeFeatures compute_features(TriangleMesh mesh, const StoreParameters& paramet
                                const Progress& progress) {
   Operator op = compute_operator(mesh, {.kind = parameters.operator_kind, .mass = parameters.mass});
   Spectrum spectrum = compute_spectrum(op, {.count = parameters.count, .progress = progress});
-  return {at_unit_area(std::move(spectrum), op.area), op.area, std::move(mesh),
-          std::move(op.lumped_mass)};
+  return {at_unit_area(at_vertices(std::move(spectrum), op), op.area), op.area, std::move(mesh),
+          op.lumped_mass.head(op.vertices)};
 }
 
 ShapeRecord compute_record(std::string name, std::string label, TriangleMesh mesh,

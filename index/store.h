@@ -18,14 +18,14 @@ namespace timbre {
 
 /// What all spectra of one database were computed with; never mixed.
 struct StoreParameters {
-  OperatorKind operator_kind = OperatorKind::cotan;
+  OperatorKind operator_kind = OperatorKind::robust;
   MassKind mass = MassKind::lumped;
   int count = 200;  ///< eigenvalues kept of each shape; fewer on small meshes
 
   bool operator==(const StoreParameters&) const = default;
 };
 
-/// `k=200 mass=lumped operator=cotan`, as a map; part of what every stored blob means.
+/// `k=200 mass=lumped operator=robust`, as a map; part of what every stored blob means.
 [[nodiscard]] Parameters to_parameters(const StoreParameters& parameters);
 
 /// A stored shape without its data.

@@ -128,7 +128,12 @@ struct HeatGeodesics::Impl {
     }
     const detail::UnitSizeMesh sized = detail::at_unit_size(mesh);
     unit = sized.unit;
-    const Operator op = compute_operator(sized.mesh);
+    const Operator op = compute_operator(sized.mesh, {.kind = OperatorKind::cotan});
+    if (op.components_left_out > 0) {
+      throw Error(ErrorKind::bad_input, "", "faces",
+                  "those of " + std::to_string(op.components_left_out) +
+                      " components have no area; use the exact method");
+    }
     component = op.component;
     triangles = flatten(sized.mesh);
     std::vector<double> time = squared_steps(sized.mesh, op);

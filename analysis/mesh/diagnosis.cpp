@@ -10,7 +10,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/mesh/detail/grouping.h"
-#include "timbre/analysis/mesh/detail/triangle.h"
+#include "timbre/analysis/mesh/triangle.h"
 
 namespace timbre {
 namespace {
@@ -85,7 +85,7 @@ class Examination {
   explicit Examination(const TriangleMesh& mesh)
       : mesh_(mesh),
         vertex_count_(static_cast<std::size_t>(mesh.vertices.rows())),
-        unit_(detail::unit_of(
+        unit_(unit_of(
             {mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size())})),
         corners_(proper_corners(mesh.faces)),
         fans_(corners_.size()),
@@ -124,7 +124,7 @@ class Examination {
       sorted[f] = {corner[0], corner[1], corner[2]};
       std::sort(sorted[f].begin(), sorted[f].end());
       const bool repeats = sorted[f][0] == sorted[f][1] || sorted[f][1] == sorted[f][2];
-      if (repeats || detail::has_no_area(position(corner[0]), position(corner[1]),
+      if (repeats || has_no_area(position(corner[0]), position(corner[1]),
                                          position(corner[2]), 1.0 / unit_)) {
         note(found_.degenerate_faces, found_.first_degenerate_faces, static_cast<Index>(f));
       }
@@ -237,7 +237,7 @@ class Examination {
   void measure() {
     double area = 0.0;
     for (std::size_t c = 0; c < corner_count(); c += 3) {
-      area += detail::triangle_area(position(corners_[c]), position(corners_[c + 1]),
+      area += triangle_area(position(corners_[c]), position(corners_[c + 1]),
                                     position(corners_[c + 2]), 1.0 / unit_);
     }
     found_.area = area * unit_ * unit_;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "timbre/analysis/core/error.h"
-#include "timbre/analysis/mesh/detail/triangle.h"
+#include "timbre/analysis/mesh/triangle.h"
 
 namespace timbre {
 namespace {
@@ -26,7 +26,7 @@ void require_range(const Points& points, std::int32_t count, std::int32_t start)
 std::vector<std::int32_t> farthest_points(const Points& points, std::int32_t count,
                                           std::int32_t start) {
   require_range(points, count, start);
-  const double unit = detail::unit_of({points.data(), static_cast<std::size_t>(points.size())});
+  const double unit = unit_of({points.data(), static_cast<std::size_t>(points.size())});
   const Points scaled = points / unit;  // so that no square overflows
   constexpr double kChosen = -1.0;
   Eigen::VectorXd distance =

@@ -333,4 +333,11 @@ Spectrum at_unit_area(Spectrum spectrum, double area) {
   return spectrum;
 }
 
+Spectrum at_vertices(Spectrum spectrum, const Operator& op) {
+  if (spectrum.vectors.rows() > op.vertices) {
+    spectrum.vectors = Eigen::MatrixXd(spectrum.vectors.topRows(op.vertices));
+  }
+  return spectrum;
+}
+
 }  // namespace timbre

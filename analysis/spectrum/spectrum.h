@@ -30,10 +30,10 @@ struct Certificate {
 /// Spectrum may rely on `residuals`, and on `certificate` where it is not empty.
 struct Spectrum {
   Eigen::VectorXd values;       ///< k, ascending, 1/length^2; exact zeros are 0
-  Eigen::MatrixXd vectors;      ///< n x k, M-orthonormal, column i for values(i)
+  Eigen::MatrixXd vectors;      ///< N x k, M-orthonormal, column i for values(i)
   Eigen::VectorXd residuals;    ///< k, relative, dimensionless
   double orthonormality = 0.0;  ///< max |Phi^T M Phi - I|
-  int zeros = 0;                ///< leading eigenvalues that are exactly 0, one per component
+  int zeros = 0;                ///< leading eigenvalues that are exactly 0: `count_zeros`
   std::optional<Certificate> certificate;  ///< empty if not asked for
 };
 
@@ -43,7 +43,7 @@ struct Spectrum {
 /// union, and an eigenfunction lives on one component. The result does not depend on
 /// the number of threads. The sign of a column is canonical (the first entry, in vertex
 /// order, above half the largest is positive) but means nothing: use it for display,
-/// never in an algorithm. On vertices in no triangle eigenfunctions are 0.
+/// never in an algorithm. On rows without part, as vertices in no triangle, eigenfunctions are 0.
 ///
 /// @param op  as `compute_operator` makes it
 /// @throws Error  bad_request if count < 1; not_converged if a pair misses `tolerance`
@@ -55,5 +55,8 @@ struct Spectrum {
 /// area, vectors times its square root.
 /// @param area  total area of the operator the spectrum came from
 [[nodiscard]] Spectrum at_unit_area(Spectrum spectrum, double area);
+
+/// The same with the rows of vertices only, where `p2` and `p3` have further nodes.
+[[nodiscard]] Spectrum at_vertices(Spectrum spectrum, const Operator& op);
 
 }  // namespace timbre

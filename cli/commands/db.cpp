@@ -26,7 +26,8 @@ void add_db_create(CLI::App& db, Context& context) {
   add_common_options(command, context, false);
   command.footer("Example:\n  timbre db create shapes.timbre --mass consistent");
   command.callback([args, &context] {
-    const Store store = Store::create(args->database, {args->op.kind, args->op.mass, args->count});
+    const Store store =
+        Store::create(args->database, {args->op.kind, mass_of(args->op), args->count});
     context.answer(
         {{"database", args->database}, {"parameters", to_parameters(store.parameters())}},
         "created " + escape_control(args->database) + "\n");

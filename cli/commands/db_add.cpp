@@ -26,8 +26,13 @@ struct Arguments {
 };
 
 StoreParameters wanted_parameters(const Arguments& args, StoreParameters parameters) {
-  if (args.operator_given) parameters.operator_kind = args.op.kind;
-  if (args.mass_given) parameters.mass = args.op.mass;
+  if (args.operator_given && args.op.kind != parameters.operator_kind) {
+    parameters.operator_kind = args.op.kind;
+    parameters.mass = mass_of({.kind = args.op.kind});
+  }
+  if (args.mass_given) {
+    parameters.mass = mass_of({.kind = parameters.operator_kind, .mass = args.op.mass});
+  }
   if (args.count_given) parameters.count = args.count;
   return parameters;
 }

@@ -52,18 +52,17 @@ Values eigenfunction_of(const RenderValues& args, const Context& context,
     throw bad_option("eigenfunction",
                      "the mesh has only " + std::to_string(spectrum.vectors.cols()) + ", from 0");
   }
-  return {spectrum.vectors.col(*args.eigenfunction),
+  return {spectrum.vectors.col(*args.eigenfunction).head(op.vertices),
           "eigenfunction " + std::to_string(*args.eigenfunction), true, 0.0};
 }
 
 // Without --column a time a third of the way, where limbs show, or an energy in the middle.
 Values signature_of(const RenderValues& args, const Context& context, const TriangleMesh& mesh) {
   const Operator op = compute_operator(mesh, args.op);
-  const int zeros = static_cast<int>(op.component_area.size());
-  const Spectrum spectrum = at_unit_area(
-      compute_spectrum(
-          op, {.count = args.count + zeros, .certify = false, .progress = context.progress()}),
-      op.area);
+  const int zeros = count_zeros(op);
+  Spectrum found = compute_spectrum(
+      op, {.count = args.count + zeros, .certify = false, .progress = context.progress()});
+  const Spectrum spectrum = at_unit_area(at_vertices(std::move(found), op), op.area);
   const Eigen::MatrixXd table =
       args.signature == "hks"
           ? compute_heat_kernel_signature(spectrum, heat_kernel_times(spectrum))
@@ -149,6 +148,7 @@ void add_value_options(CLI::App& command, RenderValues& args) {
                   "draw so many lines of equal value; default: 1, at 0, for diverging colours")
       ->check(CLI::Range(0, 1000));
   add_operator_options(command, args.op);
+  add_boundary_option(command, args.op);
 }
 
 std::optional<ShownValues> show_values(const RenderValues& args, const Context& context,

@@ -40,10 +40,10 @@ Solved solve(const Arguments& args, const Context& context) {
   const MeshFile file = load_mesh(context, args.mesh);
   for_file(args.mesh, [&] {
     solved.op = compute_operator(file.mesh, args.op);
-    const int zeros = static_cast<int>(solved.op.component_area.size());
-    solved.spectrum = at_unit_area(
-        compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()}),
-        solved.op.area);
+    const int zeros = count_zeros(solved.op);
+    Spectrum found =
+        compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()});
+    solved.spectrum = at_unit_area(at_vertices(std::move(found), solved.op), solved.op.area);
   });
   const Eigen::Index used = solved.spectrum.values.size() - solved.spectrum.zeros;
   if (used < args.count) {
@@ -141,6 +141,7 @@ void add_shared_options(CLI::App& command, Arguments& args, Context& context) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
   add_operator_options(command, args.op);
+  add_boundary_option(command, args.op);
   add_read_options(command, context);
   add_common_options(command, context, true);
 }

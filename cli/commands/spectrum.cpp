@@ -8,6 +8,7 @@
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/analysis/core/output_file.h"
 #include "timbre/analysis/core/stopwatch.h"
+#include "timbre/analysis/operators/finite_elements.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 #include "timbre/cli/command.h"
 #include "timbre/cli/options.h"
@@ -38,6 +39,13 @@ void add_sparse(std::vector<NamedArray>& arrays, const std::string& name,
   arrays.push_back({name + "_shape", to_npy(VectorXi(Eigen::Vector2i(rows, rows)))});
 }
 
+// Where the rows after those of the vertices are; empty if there are none.
+Points nodes_of(const TriangleMesh& mesh, const Operator& op) {
+  if (op.kind != OperatorKind::p2 && op.kind != OperatorKind::p3) return {};
+  const int degree = op.kind == OperatorKind::p2 ? 2 : 3;
+  return node_positions(number_nodes(mesh.faces, op.vertices, degree), mesh.vertices);
+}
+
 std::string npz(const TriangleMesh& mesh, const Operator& op, const Spectrum& found) {
   std::vector<NamedArray> arrays = {
       {"vertices", to_npy(mesh.vertices)},    {"faces", to_npy(mesh.faces)},
@@ -45,6 +53,8 @@ std::string npz(const TriangleMesh& mesh, const Operator& op, const Spectrum& fo
       {"residuals", to_npy(found.residuals)}, {"mass", to_npy(op.lumped_mass)}};
   add_sparse(arrays, "W", op.stiffness);
   if (op.mass_kind == MassKind::consistent) add_sparse(arrays, "M", op.mass);
+  const Points nodes = nodes_of(mesh, op);
+  if (nodes.rows() > 0) arrays.push_back({"nodes", to_npy(nodes)});
   const int certified = found.certificate ? 1 : 0;
   arrays.push_back({"certified", to_npy(Eigen::VectorXi(Eigen::VectorXi::Constant(1, certified)))});
   arrays.push_back({"timbre_version", to_npy(version_number())});
@@ -116,13 +126,18 @@ void run(const Arguments& args, const Context& context) {
     context.note(args.mesh + ": thin triangles: edge lengths raised by " +
                  to_short_text(op.mollified_by) + " (mollification)");
   }
+  if (op.components_left_out > 0) {
+    context.note(args.mesh + ": " + std::to_string(op.components_left_out) +
+                 (op.components_left_out == 1 ? " component has" : " components have") +
+                 " no area and no part in the spectrum");
+  }
   SpectrumOptions options = args.spectrum;
   options.progress = context.progress();
   const Spectrum found = for_file(args.mesh, [&] { return compute_spectrum(op, options); });
   timings["spectrum"] = watch.lap();
   if (found.values.size() < options.count) {
     context.note(args.mesh + ": has only " + std::to_string(found.values.size()) +
-                 " eigenpairs, one for each vertex in use");
+                 " eigenpairs, one for each row of its matrices");
   }
   if (!context.output.empty()) write_spectrum(context, file.mesh, op, found);
 
@@ -135,7 +150,10 @@ void run(const Arguments& args, const Context& context) {
                   {"certificate", to_json(found.certificate)},
                   {"operator", to_word(op.kind)},
                   {"mass", to_word(op.mass_kind)},
+                  {"boundary", to_word(op.boundary)},
                   {"area", op.area},
+                  {"flips", op.flips},
+                  {"components_left_out", op.components_left_out},
                   {"mollified_by", op.mollified_by},
                   {"timings", timings}},
                  to_prose(found, context.output));
@@ -151,6 +169,7 @@ void add_spectrum(CLI::App& timbre, Context& context) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
   add_operator_options(command, args->op);
+  add_boundary_option(command, args->op);
   command.add_option("--tolerance", args->spectrum.tolerance, "largest relative residual accepted")
       ->capture_default_str()
       ->check(number_between(1e-14, 1.0));

@@ -61,11 +61,10 @@ Spectrum spectrum_of(const Material& material, const TriangleMesh& mesh) {
   const StoreParameters& parameters = material.store.parameters();
   const Operator op =
       compute_operator(mesh, {.kind = parameters.operator_kind, .mass = parameters.mass});
-  const int zeros = static_cast<int>(op.component_area.size());
-  return at_unit_area(compute_spectrum(op, {.count = kPairs + zeros,
-                                            .certify = false,
-                                            .progress = material.pictures.progress()}),
-                      op.area);
+  const int zeros = count_zeros(op);
+  Spectrum spectrum = compute_spectrum(
+      op, {.count = kPairs + zeros, .certify = false, .progress = material.pictures.progress()});
+  return at_unit_area(at_vertices(std::move(spectrum), op), op.area);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <system_error>
 
@@ -153,7 +154,7 @@ Database open_for_reading(const std::string& path) {
 }
 
 template <typename Kind>
-std::optional<Kind> from_word(const std::string& word, std::initializer_list<Kind> kinds) {
+std::optional<Kind> from_word(const std::string& word, std::span<const Kind> kinds) {
   for (const Kind kind : kinds) {
     if (word == to_word(kind)) return kind;
   }
@@ -222,8 +223,8 @@ StoreParameters read_parameters(const Database& database) {
     const std::size_t equals = word.find('=');
     if (equals != std::string::npos) found[word.substr(0, equals)] = word.substr(equals + 1);
   }
-  const auto kind = from_word(found["operator"], {OperatorKind::cotan});
-  const auto mass = from_word(found["mass"], {MassKind::lumped, MassKind::consistent});
+  const auto kind = from_word<OperatorKind>(found["operator"], kOperatorKinds);
+  const auto mass = from_word<MassKind>(found["mass"], kMassKinds);
   const auto count = parse_integer(found["k"]);
   StoreParameters parameters;
   if (kind) parameters.operator_kind = *kind;

@@ -36,6 +36,13 @@ inline TriangleMesh tetrahedron() {
                    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
 }
 
+/// Eight equilateral triangles.
+inline TriangleMesh octahedron() {
+  return make_mesh(
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}});
+}
+
 /// (n + 1)^2 points of the unit square, row by row, and 2 n^2 triangles.
 inline TriangleMesh grid(std::int32_t n) {
   std::vector<std::array<double, 3>> vertices;

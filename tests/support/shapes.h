@@ -62,4 +62,17 @@ inline std::vector<std::int32_t> random_order(Eigen::Index n, unsigned seed) {
   return order;
 }
 
+/// The same faces in another order, half of them turned over.
+inline TriangleMesh with_faces_shuffled(const TriangleMesh& mesh, unsigned seed) {
+  const std::vector<std::int32_t> order = random_order(mesh.faces.rows(), seed);
+  std::mt19937 random(seed);
+  TriangleMesh result = mesh;
+  for (std::size_t f = 0; f < order.size(); ++f) {
+    auto face = result.faces.row(static_cast<Eigen::Index>(f));
+    face = mesh.faces.row(order[f]);
+    if (random() % 2 == 0) std::swap(face[1], face[2]);
+  }
+  return result;
+}
+
 }  // namespace timbre

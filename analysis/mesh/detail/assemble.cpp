@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "timbre/analysis/mesh/detail/grouping.h"
-#include "timbre/analysis/mesh/detail/triangle.h"
+#include "timbre/analysis/mesh/triangle.h"
 #include "timbre/analysis/mesh/detail/triangulate.h"
 
 namespace timbre::detail {

@@ -156,11 +156,17 @@ void sort_pairs(Component& component) {
   component.vectors = MatrixXd(component.vectors(Eigen::all, order));
 }
 
-// The kernel of W is known: the constants. It replaces what the solver found of it.
+// The kernel of W is known: the constants. They replace what the solver found of them, and leave
+// the other vectors, which hold a little of them where weights spread over many powers of ten.
 void put_exact_zero(Component& component) {
-  component.values[0] = 0.0;
-  component.vectors.col(0).setConstant(1.0 / std::sqrt(component.lumped_mass.sum()));
   component.values = component.values.cwiseMax(0.0);
+  if (!component.has_constants) return;
+  component.values[0] = 0.0;
+  const VectorXd constant =
+      VectorXd::Constant(component.size(), 1.0 / std::sqrt(component.lumped_mass.sum()));
+  const Eigen::RowVectorXd shares = (component.mass * constant).transpose() * component.vectors;
+  component.vectors.noalias() -= constant * shares;
+  component.vectors.col(0) = constant;
 }
 
 }  // namespace
@@ -177,7 +183,8 @@ std::vector<Component> split_into_components(const Operator& op) {
   for (std::size_t c = 0; c < components.size(); ++c) {
     Component& part = components[c];
     part.area = op.component_area[static_cast<Index>(c)];
-    part.diagonal_mass = op.mass_kind == MassKind::lumped;
+    part.diagonal_mass = op.mass_kind != MassKind::consistent;
+    part.has_constants = op.has_constants[c];
     part.stiffness = restricted(op.stiffness, part.vertices, local);
     part.mass = restricted(op.mass, part.vertices, local) / part.area;
     part.lumped_mass = op.lumped_mass(part.vertices) / part.area;

@@ -11,7 +11,7 @@
 namespace timbre::detail {
 
 /// One connected component of a mesh, scaled to unit area, and the eigenpairs found
-/// so far. A lone component has exactly one zero eigenvalue, of the constant function.
+/// so far. It has one zero eigenvalue, of the constant function, or with a Dirichlet boundary none.
 struct Component {
   std::vector<std::int32_t> vertices;  ///< rows of the whole mesh
   SparseMatrix stiffness;
@@ -19,6 +19,7 @@ struct Component {
   Eigen::VectorXd lumped_mass;
   double area = 0.0;  ///< true area; eigenvalues here are `area` times the true ones
   bool diagonal_mass = true;
+  bool has_constants = true;
 
   Eigen::VectorXd values;   ///< ascending, the lowest of the component
   Eigen::MatrixXd vectors;  ///< M-orthonormal

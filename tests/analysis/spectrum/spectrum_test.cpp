@@ -11,6 +11,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/datasets/analytic.h"
+#include "timbre/tests/support/mesh_shapes.h"
 
 namespace timbre {
 namespace {
@@ -200,17 +201,8 @@ TEST(ComputeSpectrum, GivesEveryPairWhenAskedForMoreThanThereAre) {
 }
 
 TEST(ComputeSpectrum, CertifiesSmallSymmetricMeshesForEveryCount) {
-  TriangleMesh octahedron;
-  octahedron.vertices.resize(6, 3);
-  octahedron.vertices << 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1;
-  octahedron.faces.resize(8, 3);
-  octahedron.faces << 0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5;
-  TriangleMesh triangle;
-  triangle.vertices.resize(3, 3);
-  triangle.vertices << 1, 0, 0, 0, 1, 0, 0, 0, 0;
-  triangle.faces.resize(1, 3);
-  triangle.faces << 0, 1, 2;
-  for (const TriangleMesh& mesh : {octahedron, triangle}) {
+  const TriangleMesh triangle = make_mesh({{1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, {{0, 1, 2}});
+  for (const TriangleMesh& mesh : {octahedron(), triangle}) {
     for (int count = 1; count <= 6; ++count) {
       for (const auto backend : {FactorizationBackend::eigen, FactorizationBackend::automatic}) {
         const Spectrum found =

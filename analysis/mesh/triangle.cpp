@@ -1,10 +1,10 @@
-#include "timbre/analysis/mesh/detail/triangle.h"
+#include "timbre/analysis/mesh/triangle.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace timbre::detail {
+namespace timbre {
 namespace {
 
 using Eigen::Vector3d;
@@ -41,4 +41,4 @@ bool has_no_area(const double* a, const double* b, const double* c, double per_u
   return size == 0.0 || is_flat(u / size, v / size);
 }
 
-}  // namespace timbre::detail
+}  // namespace timbre

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace timbre::detail {
+namespace timbre {
 
 /// A power of two near the largest coordinate: multiplication by `1 / unit` is exact and
 /// leaves numbers below 2, whose squares and products do not overflow.
@@ -18,4 +18,4 @@ namespace timbre::detail {
 /// triangle does not matter: neither 1e300 nor 1e-200 is an alarm.
 [[nodiscard]] bool has_no_area(const double* a, const double* b, const double* c, double per_unit);
 
-}  // namespace timbre::detail
+}  // namespace timbre

@@ -1,11 +1,11 @@
-#include "timbre/analysis/mesh/detail/triangle.h"
+#include "timbre/analysis/mesh/triangle.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <vector>
 
-namespace timbre::detail {
+namespace timbre {
 namespace {
 
 bool is_flat(std::array<double, 9> corners, double scale) {
@@ -42,4 +42,4 @@ TEST(TriangleArea, IsInSquaresOfTheUnit) {
 }
 
 }  // namespace
-}  // namespace timbre::detail
+}  // namespace timbre

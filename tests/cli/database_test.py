@@ -71,7 +71,7 @@ class Commands(unittest.TestCase):
         self.run_timbre("db", "create", self.db, code=2)
         self.run_timbre("db", "add", self.db, self.files[0])
         done = self.run_timbre("db", "add", self.db, self.files[1], "--mass", "lumped", code=2)
-        self.assertIn("k=30 mass=consistent operator=cotan", done.stderr)
+        self.assertIn("k=30 mass=consistent operator=robust", done.stderr)
         self.assertEqual(len(self.json("db", "list", self.db)["shapes"]), 1)
 
     def test_standard_input_needs_a_name(self):

@@ -192,7 +192,7 @@ TEST(StoreDescriptor, RefusesAnotherVersionAndOtherParameters) {
   channel.version = 2;
   EXPECT_NE(what_of([&] { (void)store.descriptor("cat", channel); })
                 .find("channel dna_log: stored with version 1 (count=100 form=logarithm k=200 "
-                      "mass=lumped operator=cotan), this timbre computes version 2"),
+                      "mass=lumped operator=robust), this timbre computes version 2"),
             std::string::npos);
   channel.version = 1;
   channel.parameters["count"] = "50";

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "timbre/analysis/mesh/detail/grouping.h"
-#include "timbre/analysis/mesh/triangle.h"
 #include "timbre/analysis/mesh/detail/triangulate.h"
+#include "timbre/analysis/mesh/triangle.h"
 
 namespace timbre::detail {
 namespace {

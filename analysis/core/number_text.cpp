@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
+#include <cstdlib>
 
 namespace timbre {
 namespace {
@@ -43,6 +45,22 @@ bool is_tiny(std::string_view number) {
   return power + place < 0;
 }
 
+// An exponent of up to three digits at `at`, which moves behind it; 0 if there is none.
+int leading_exponent(std::string_view text, std::size_t& at) {
+  if (at == text.size() || (text[at] != 'e' && text[at] != 'E')) return 0;
+  std::size_t next = at + 1;
+  const bool has_sign = next < text.size() && (text[next] == '-' || text[next] == '+');
+  const bool is_negative = has_sign && text[next] == '-';
+  if (has_sign) ++next;
+  const std::size_t first = next;
+  int exponent = 0;
+  for (; next < text.size() && next < first + 3 && is_digit(text[next]); ++next) {
+    exponent = 10 * exponent + (text[next] - '0');
+  }
+  if (next > first) at = next;
+  return is_negative ? -exponent : exponent;
+}
+
 }  // namespace
 
 std::string to_text(double value) {
@@ -66,7 +84,44 @@ std::string to_short_text(double value, int digits) {
   return {buffer.data(), end};
 }
 
+LeadingNumber leading_number(std::string_view text) {
+  static_assert(FLT_EVAL_METHOD == 0, "one operation must round once, to double");
+  static constexpr std::array<double, 23> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                     1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                     1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  constexpr std::size_t kMostDigits = 19;  // 10^19 < 2^64
+  constexpr std::uint64_t kMostExact = std::uint64_t{1} << 53U;
+
+  const std::size_t begin = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+  std::size_t at = begin;
+  std::uint64_t digits = 0;
+  const auto read_digits = [&] {
+    const std::size_t first = at;
+    for (; at < text.size() && is_digit(text[at]); ++at) {
+      digits = 10 * digits + static_cast<std::uint64_t>(text[at] - '0');
+    }
+    return at - first;
+  };
+  std::size_t count = read_digits();
+  std::size_t decimals = 0;
+  if (at < text.size() && text[at] == '.') {
+    ++at;
+    decimals = read_digits();
+    count += decimals;
+  }
+  if (count == 0 || count > kMostDigits || digits > kMostExact) return {};
+  const int power = leading_exponent(text, at) - static_cast<int>(decimals);
+  const auto size = static_cast<std::size_t>(std::abs(power));
+  if (size >= kPowers.size()) return {};
+  const auto whole = static_cast<double>(digits);
+  const double value = power < 0 ? whole / kPowers[size] : whole * kPowers[size];
+  return {text[0] == '-' ? -value : value, at};
+}
+
 std::optional<double> parse_double(std::string_view token) {
+  if (const auto [value, length] = leading_number(token); length > 0 && length == token.size()) {
+    return value;
+  }
   token = without_plus(token);
   const std::string_view digits = token.substr(!token.empty() && token[0] == '-' ? 1 : 0);
   // Rules out nan, inf and a lone sign, which from_chars would take or misread.

@@ -16,135 +16,121 @@ constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
 
 using Polygon = std::span<const std::int32_t>;
 
-// The polygons of three or more corners.
-struct Kept {
-  std::vector<Polygon> polygons;
-  std::vector<std::int32_t> number;  // of each in the file
-
-  [[nodiscard]] std::size_t size() const { return number.size(); }
-  [[nodiscard]] Polygon operator[](std::size_t i) const { return polygons[i]; }
-};
-
-Kept keep(PolygonMesh& mesh) {
-  Kept kept;
-  kept.polygons.reserve(mesh.ends.size());
-  kept.number.reserve(mesh.ends.size());
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < mesh.ends.size(); begin = mesh.ends[i++]) {
-    const auto number = static_cast<std::int32_t>(i);
-    if (mesh.ends[i] - begin >= 3) {
-      kept.polygons.push_back(Polygon(mesh.corners).subspan(begin, mesh.ends[i] - begin));
-      kept.number.push_back(number);
-    } else {
-      mesh.findings.add(Finding::dropped_element, number);
-    }
+// Polygons of less than three corners make no triangle and are passed over.
+template <typename Visit>
+void for_each_polygon(const PolygonMesh& mesh, Visit visit) {
+  for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
+    const Polygon polygon = mesh.polygon(i);
+    if (polygon.size() >= 3) visit(polygon, static_cast<std::int64_t>(i));
   }
-  return kept;
 }
 
-bool repeats_a_corner(Polygon polygon, std::vector<std::int32_t>& scratch) {
+void find_dropped_elements(PolygonMesh& mesh) {
+  if (mesh.has_only_triangles()) return;
+  for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
+    if (mesh.polygon(i).size() >= 3) continue;
+    mesh.findings.add(Finding::dropped_element, static_cast<std::int64_t>(i));
+  }
+}
+
+std::vector<std::int32_t> sorted(Polygon polygon) {
+  std::vector<std::int32_t> corners(polygon.begin(), polygon.end());
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+bool repeats_a_corner(Polygon polygon) {
   if (polygon.size() == 3) {
     return polygon[0] == polygon[1] || polygon[1] == polygon[2] || polygon[2] == polygon[0];
   }
-  scratch.assign(polygon.begin(), polygon.end());
-  std::sort(scratch.begin(), scratch.end());
-  return std::adjacent_find(scratch.begin(), scratch.end()) != scratch.end();
+  const std::vector<std::int32_t> corners = sorted(polygon);
+  return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
 }
 
-void find_degenerate_faces(const Kept& kept, PolygonMesh& mesh) {
-  const double* const xyz = mesh.coordinates.data();
-  const double per_unit = 1.0 / unit_of(mesh.coordinates);
-  std::vector<std::int32_t> scratch;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const Polygon polygon = kept[i];
+void find_degenerate_faces(PolygonMesh& mesh) {
+  const std::span<const double> coordinates = mesh.coordinates.numbers();
+  const double per_unit = 1.0 / unit_of(coordinates);
+  for_each_polygon(mesh, [&](Polygon polygon, std::int64_t number) {
     const auto position = [&](std::size_t corner) {
-      return xyz + 3 * static_cast<std::size_t>(polygon[corner]);
+      return coordinates.data() + 3 * static_cast<std::size_t>(polygon[corner]);
     };
-    if (repeats_a_corner(polygon, scratch) ||
+    if (repeats_a_corner(polygon) ||
         (polygon.size() == 3 && has_no_area(position(0), position(1), position(2), per_unit))) {
-      mesh.findings.add(Finding::degenerate_face, kept.number[i]);
+      mesh.findings.add(Finding::degenerate_face, number);
     }
+  });
+}
+
+// The same for all orders of the corners: their least stands apart, the others are summed up.
+ItemKey key_of(Polygon polygon) {
+  if (polygon.size() < 3) return {};
+  std::int32_t least = polygon[0];
+  std::uint64_t sum = 0;
+  for (const std::int32_t corner : polygon) {
+    least = std::min(least, corner);
+    sum += mixed(0x94d049bb133111ebU, static_cast<std::uint64_t>(corner));
   }
+  return {static_cast<std::size_t>(least), mixed(0, sum) * 0xbf58476d1ce4e5b9U};
 }
 
-void sort(std::span<std::int32_t> corners) {
-  if (corners.size() > 3) return std::sort(corners.begin(), corners.end());
-  if (corners[0] > corners[1]) std::swap(corners[0], corners[1]);
-  if (corners[1] > corners[2]) std::swap(corners[1], corners[2]);
-  if (corners[0] > corners[1]) std::swap(corners[0], corners[1]);
-}
-
-void find_duplicate_faces(const Kept& kept, PolygonMesh& mesh) {
-  std::vector<std::int32_t> sorted(mesh.corners);
-  const auto key = [&](std::size_t i) {
-    const Polygon polygon = kept[i];
-    const auto begin = static_cast<std::size_t>(polygon.data() - mesh.corners.data());
-    return std::span(sorted).subspan(begin, polygon.size());
-  };
-  for (std::size_t i = 0; i < kept.size(); ++i) sort(key(i));
-  const auto first = first_equal(
-      kept.size(), static_cast<std::size_t>(mesh.vertex_count()),
-      [&](std::size_t i) { return static_cast<std::size_t>(key(i)[0]); },
+void find_duplicate_faces(PolygonMesh& mesh) {
+  const auto found = repeated(
+      mesh.polygon_count(), static_cast<std::size_t>(mesh.vertex_count()) + 1,
+      [&](std::size_t i) { return key_of(mesh.polygon(i)); },
       [&](std::size_t i, std::size_t j) {
-        const auto a = key(i);
-        const auto b = key(j);
-        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+        return sorted(mesh.polygon(i)) < sorted(mesh.polygon(j));
       });
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (static_cast<std::size_t>(first[i]) != i) {
-      mesh.findings.add(Finding::duplicate_face, kept.number[i]);
-    }
+  for (const std::int32_t face : found) {
+    if (mesh.polygon(static_cast<std::size_t>(face)).size() < 3) continue;
+    mesh.findings.add(Finding::duplicate_face, face);
   }
 }
 
-void find_odd_vertices(const Kept& kept, PolygonMesh& mesh) {
-  const auto count = static_cast<std::size_t>(mesh.vertex_count());
-  const auto first = first_at_position(mesh.coordinates.data(), count);
-  std::vector<bool> used(count, kept.size() == 0);
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    for (const std::int32_t vertex : kept[i]) used[static_cast<std::size_t>(vertex)] = true;
+void find_odd_vertices(PolygonMesh& mesh) {
+  for (const std::int32_t vertex : repeated_positions(mesh.coordinates.numbers())) {
+    mesh.findings.add(Finding::coincident_vertex, vertex);
   }
-  for (std::size_t v = 0; v < count; ++v) {
-    const auto vertex = static_cast<std::int32_t>(v);
-    if (first[v] != vertex) mesh.findings.add(Finding::coincident_vertex, vertex);
-    if (!used[v]) mesh.findings.add(Finding::unused_vertex, vertex);
+  std::vector<bool> used(static_cast<std::size_t>(mesh.vertex_count()), false);
+  bool has_faces = false;
+  for_each_polygon(mesh, [&](Polygon polygon, std::int64_t) {
+    for (const std::int32_t vertex : polygon) used[static_cast<std::size_t>(vertex)] = true;
+    has_faces = true;
+  });
+  if (!has_faces) return;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) mesh.findings.add(Finding::unused_vertex, static_cast<std::int64_t>(v));
   }
 }
 
-std::vector<std::int32_t> triangles_of(const Kept& kept, PolygonMesh& mesh) {
+Faces triangles_of(PolygonMesh& mesh) {
+  if (mesh.has_only_triangles()) return std::move(mesh.corners).take();
   std::vector<std::int32_t> triangles;
   triangles.reserve(mesh.corners.size());
-  Triangulator triangulator(mesh.coordinates);
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (!triangulator.split(kept[i], triangles)) {
-      mesh.findings.add(Finding::crude_split, kept.number[i]);
-    }
-    if (kept[i].size() > 3) mesh.findings.add(Finding::triangulated, kept.number[i]);
-  }
-  return triangles;
+  Triangulator triangulator(mesh.coordinates.numbers());
+  for_each_polygon(mesh, [&](Polygon polygon, std::int64_t number) {
+    if (!triangulator.split(polygon, triangles)) mesh.findings.add(Finding::crude_split, number);
+    if (polygon.size() > 3) mesh.findings.add(Finding::triangulated, number);
+  });
+  return Eigen::Map<const Faces>(triangles.data(), std::ssize(triangles) / 3, 3);
 }
 
 }  // namespace
 
 MeshFile assemble(PolygonMesh polygons) {
-  if (polygons.findings.count(Finding::trailing_data) > 0 && polygons.ends.empty()) {
+  if (polygons.findings.count(Finding::trailing_data) > 0 && polygons.polygon_count() == 0) {
     throw Error(ErrorKind::bad_input, "", "header", "no faces are declared, but more data follow");
   }
   if (polygons.coordinates.size() / 3 > kMost || polygons.corners.size() > kMost) {
     throw Error(ErrorKind::bad_input, "", "size", "more than 2147483647 vertices or corners");
   }
-  const Kept kept = keep(polygons);
-  find_degenerate_faces(kept, polygons);
-  find_duplicate_faces(kept, polygons);
-  find_odd_vertices(kept, polygons);
-  const std::vector<std::int32_t> triangles = triangles_of(kept, polygons);
-  if (triangles.empty()) polygons.findings.add_count(Finding::no_faces);
-
+  find_dropped_elements(polygons);
+  find_degenerate_faces(polygons);
+  find_duplicate_faces(polygons);
+  find_odd_vertices(polygons);
   MeshFile file;
-  file.mesh.vertices =
-      Eigen::Map<const Points>(polygons.coordinates.data(), polygons.vertex_count(), 3);
-  file.mesh.faces =
-      Eigen::Map<const Faces>(triangles.data(), static_cast<Eigen::Index>(triangles.size() / 3), 3);
+  file.mesh.faces = triangles_of(polygons);
+  if (file.mesh.faces.rows() == 0) polygons.findings.add_count(Finding::no_faces);
+  file.mesh.vertices = std::move(polygons.coordinates).take();
   file.warnings = polygons.findings.warnings();
   return file;
 }

@@ -1,6 +1,7 @@
 #include "timbre/analysis/mesh/detail/cursor.h"
 
 #include <limits>
+#include <utility>
 
 #include "timbre/analysis/core/number_text.h"
 
@@ -97,6 +98,12 @@ std::size_t Cursor::count_words() {
 }
 
 double Cursor::number() {
+  skip_blanks();
+  const LeadingNumber lead = leading_number(rest());
+  if (lead.length > 0 && is_word_end(at_ + lead.length)) {
+    last_ = std::exchange(at_, at_ + lead.length);
+    return lead.value;
+  }
   const std::string_view text = word();
   if (const auto value = parse_double(text)) return *value;
   if (text.empty()) throw error("too few numbers");
@@ -104,6 +111,18 @@ double Cursor::number() {
 }
 
 std::int64_t Cursor::integer() {
+  skip_blanks();
+  constexpr std::size_t kSafeDigits = 18;
+  std::int64_t short_value = 0;
+  std::size_t end = at_;
+  for (; end < bytes_.size() && bytes_[end] >= '0' && bytes_[end] <= '9'; ++end) {
+    if (end - at_ == kSafeDigits) break;
+    short_value = 10 * short_value + (bytes_[end] - '0');
+  }
+  if (end > at_ && is_word_end(end)) {
+    last_ = std::exchange(at_, end);
+    return short_value;
+  }
   const std::string_view text = word();
   if (const auto value = parse_integer(text)) return *value;
   if (text.empty()) throw error("an integer is missing");
@@ -126,22 +145,14 @@ std::int64_t Cursor::checked_count(std::int64_t count, std::uint64_t least_bytes
   return count;
 }
 
-std::int32_t Cursor::checked_index(std::int64_t index, std::int64_t count) const {
-  if (index < 0 || index >= count) {
-    throw error("index " + std::to_string(index) + " is out of range; the file has " +
-                std::to_string(count) + " vertices");
-  }
-  return static_cast<std::int32_t>(index);
+Error Cursor::too_short(std::uint64_t count) const {
+  return error("truncated: " + std::to_string(count) + " bytes are needed, " +
+               std::to_string(left()) + " are left");
 }
 
-std::string_view Cursor::take(std::uint64_t count) {
-  last_ = at_;
-  if (count > left()) {
-    throw error("truncated: " + std::to_string(count) + " bytes are needed, " +
-                std::to_string(left()) + " are left");
-  }
-  at_ += static_cast<std::size_t>(count);
-  return bytes_.substr(last_, static_cast<std::size_t>(count));
+Error Cursor::out_of_range(std::int64_t index, std::int64_t count) const {
+  return error("index " + std::to_string(index) + " is out of range; the file has " +
+               std::to_string(count) + " vertices");
 }
 
 Error Cursor::error(const std::string& cause) const { return error_at(last_, cause); }

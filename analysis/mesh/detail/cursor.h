@@ -54,7 +54,12 @@ class Cursor {
 
   void expect_binary() { text_ = false; }
   /// The next `count` bytes. @throws Error  if fewer are left
-  std::string_view take(std::uint64_t count);
+  std::string_view take(std::uint64_t count) {
+    last_ = at_;
+    if (count > left()) throw too_short(count);
+    at_ += static_cast<std::size_t>(count);
+    return bytes_.substr(last_, static_cast<std::size_t>(count));
+  }
   /// The next value, in the byte order given.
   template <typename T>
   T value(std::endian order);
@@ -65,7 +70,10 @@ class Cursor {
   [[nodiscard]] std::int64_t checked_count(std::int64_t count, std::uint64_t least_bytes,
                                            const char* elements) const;
   /// A vertex number just read, once it is sure that it lies below `count`.
-  [[nodiscard]] std::int32_t checked_index(std::int64_t index, std::int64_t count) const;
+  [[nodiscard]] std::int32_t checked_index(std::int64_t index, std::int64_t count) const {
+    if (index < 0 || index >= count) throw out_of_range(index, count);
+    return static_cast<std::int32_t>(index);
+  }
 
   // Errors.
 
@@ -86,6 +94,13 @@ class Cursor {
 
  private:
   [[nodiscard]] char now() const { return bytes_[at_]; }
+  [[nodiscard]] Error too_short(std::uint64_t count) const;
+  [[nodiscard]] Error out_of_range(std::int64_t index, std::int64_t count) const;
+  /// Whether a word that goes up to `end` ends there for sure.
+  [[nodiscard]] bool is_word_end(std::size_t end) const {
+    if (end == bytes_.size()) return true;
+    return ends_word_[static_cast<unsigned char>(bytes_[end])] && bytes_[end] != '\\';
+  }
   [[nodiscard]] bool at_continuation(std::size_t& next_line) const;
   void skip_blanks();
   void skip_line_end();
@@ -103,12 +118,18 @@ class Cursor {
 /// A piece of input for a message: at most 40 bytes, in quotes.
 [[nodiscard]] std::string in_quotes(std::string_view input);
 
+/// The value that `bytes` begin with; there are enough of them.
 template <typename T>
-T Cursor::value(std::endian order) {
+T value_of(std::string_view bytes, std::endian order) {
   std::array<char, sizeof(T)> raw{};
-  std::memcpy(raw.data(), take(sizeof(T)).data(), sizeof(T));
+  std::memcpy(raw.data(), bytes.data(), sizeof(T));
   if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
   return std::bit_cast<T>(raw);
+}
+
+template <typename T>
+T Cursor::value(std::endian order) {
+  return value_of<T>(take(sizeof(T)), order);
 }
 
 }  // namespace timbre::detail

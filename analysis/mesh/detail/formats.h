@@ -2,29 +2,56 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "timbre/analysis/mesh/detail/cursor.h"
 #include "timbre/analysis/mesh/detail/findings.h"
+#include "timbre/analysis/mesh/detail/growing_rows.h"
+#include "timbre/analysis/mesh/triangle_mesh.h"
 
 namespace timbre::detail {
 
 /// What a file holds, before polygons are split.
-struct PolygonMesh {
-  std::vector<double> coordinates;    ///< x y z of each vertex
-  std::vector<std::int32_t> corners;  ///< of all polygons, one after the other; all in range
-  std::vector<std::size_t> ends;      ///< for each polygon, where it ends in `corners`
+class PolygonMesh {
+ public:
+  GrowingRows<Points> coordinates;  ///< x y z of each vertex
+  GrowingRows<Faces> corners;       ///< of all polygons, one after the other; all in range
   Findings findings;
 
   void add_vertex(double x, double y, double z) {
-    coordinates.insert(coordinates.end(), {x, y, z});
+    double* const xyz = coordinates.extend(3);
+    xyz[0] = x;
+    xyz[1] = y;
+    xyz[2] = z;
   }
   /// The corners added since the last call make one polygon.
-  void end_polygon() { ends.push_back(corners.size()); }
+  void end_polygon() {
+    const bool is_one_more_triangle = ends_.empty() && corners.size() == 3 * (polygons_ + 1);
+    if (!is_one_more_triangle) note_end();
+    ++polygons_;
+  }
   [[nodiscard]] std::int64_t vertex_count() const {
     return static_cast<std::int64_t>(coordinates.size() / 3);
   }
+  [[nodiscard]] std::size_t polygon_count() const { return polygons_; }
+  [[nodiscard]] bool has_only_triangles() const { return ends_.empty(); }
+  /// The corners of a polygon.
+  [[nodiscard]] std::span<const std::int32_t> polygon(std::size_t i) const {
+    if (ends_.empty()) return corners.numbers().subspan(3 * i, 3);
+    const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
+    return corners.numbers().subspan(begin, ends_[i] - begin);
+  }
+
+ private:
+  void note_end() {
+    for (std::size_t i = ends_.size(); i < polygons_; ++i) ends_.push_back(3 * (i + 1));
+    ends_.push_back(corners.size());
+  }
+
+  std::size_t polygons_ = 0;
+  std::vector<std::size_t> ends_;  // where each ends in `corners`; empty while all are triangles
 };
 
 enum class FileFormat : std::uint8_t { off, obj, ply, stl_text, stl_binary };

@@ -1,9 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
 #include <vector>
+
+#include "timbre/analysis/mesh/detail/growing_rows.h"
+#include "timbre/analysis/mesh/triangle_mesh.h"
 
 namespace timbre::detail {
 
@@ -51,7 +59,96 @@ std::vector<std::int32_t> first_equal(std::size_t count, std::size_t buckets, Bu
   return first;
 }
 
-/// For each position the first one equal to it; -0 equals 0, no tolerance.
-[[nodiscard]] std::vector<std::int32_t> first_at_position(const double* xyz, std::size_t count);
+/// Where an item is looked for first, and what tells it from the others there.
+struct ItemKey {
+  std::size_t bucket = 0;
+  std::uint64_t hash = 0;
+};
+
+/// The items equal to an earlier one, ascending. Each item leaves one of 64 marks in its
+/// bucket, and only those whose mark was left twice are compared: fast where few items are
+/// equal, and O(count log count) comparisons whatever the input.
+///
+/// @param key_of  item -> bucket in [0, buckets) and hash; equal items have equal keys
+/// @param less    a strict weak order of items; neither less means equal
+template <typename KeyOf, typename Less>
+std::vector<std::int32_t> repeated(std::size_t count, std::size_t buckets, KeyOf key_of,
+                                   Less less) {
+  constexpr std::size_t kShare = 8;  // few marks are left twice; close together they stay in cache
+  std::vector<std::uint64_t> once(buckets);
+  std::vector<std::uint64_t> again(buckets / kShare + 1);
+  const auto mark_of = [](std::uint64_t hash) { return std::uint64_t{1} << (hash >> 58U); };
+  for (std::size_t i = 0; i < count; ++i) {
+    const ItemKey key = key_of(i);
+    const std::uint64_t mark = mark_of(key.hash);
+    if ((once[key.bucket] & mark) != 0) again[key.bucket / kShare] |= mark;
+    once[key.bucket] |= mark;
+  }
+
+  using Suspect = std::pair<std::uint64_t, std::int32_t>;  // hash and item
+  std::vector<Suspect> suspects;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ItemKey key = key_of(i);
+    if ((again[key.bucket / kShare] & mark_of(key.hash)) == 0) continue;
+    suspects.emplace_back(key.hash, static_cast<std::int32_t>(i));
+  }
+  std::sort(suspects.begin(), suspects.end());
+
+  std::vector<std::int32_t> found;
+  const auto is_before = [&](const Suspect& a, const Suspect& b) {
+    const auto i = static_cast<std::size_t>(a.second);
+    const auto j = static_cast<std::size_t>(b.second);
+    return less(i, j) || (!less(j, i) && i < j);
+  };
+  for (auto begin = suspects.begin(); begin != suspects.end();) {
+    const auto end = std::find_if(begin, suspects.end(),
+                                  [&](const Suspect& s) { return s.first != begin->first; });
+    std::sort(begin, end, is_before);
+    for (auto at = begin + 1; at < end; ++at) {
+      const auto before = static_cast<std::size_t>((at - 1)->second);
+      if (!less(before, static_cast<std::size_t>(at->second))) found.push_back(at->second);
+    }
+    begin = end;
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// Bits that depend on all bits of both.
+[[nodiscard]] inline std::uint64_t mixed(std::uint64_t state, std::uint64_t bits) {
+  state = (state ^ bits) * 0x9e3779b97f4a7c15U;
+  return state ^ (state >> 32U);
+}
+
+/// A hash of a position; the same for -0 and 0.
+[[nodiscard]] inline std::uint64_t hash_of_position(const double* xyz) {
+  std::uint64_t state = 0x94d049bb133111ebU;
+  for (int k = 0; k < 3; ++k) state = mixed(state, std::bit_cast<std::uint64_t>(xyz[k] + 0.0));
+  return state * 0xbf58476d1ce4e5b9U;
+}
+
+/// The positions equal to an earlier one, ascending; -0 equals 0, no tolerance.
+[[nodiscard]] std::vector<std::int32_t> repeated_positions(std::span<const double> xyz);
+
+/// Numbers positions in order of first appearance; -0 equals 0, no tolerance.
+class PositionTable {
+ public:
+  /// @param expected  how many different positions, roughly
+  explicit PositionTable(std::size_t expected);
+  /// The number of a position; `positions` holds those numbered so far, and a new one is added.
+  std::int32_t number_of(const std::array<double, 3>& position, GrowingRows<Points>& positions);
+
+ private:
+  static constexpr std::int32_t kEmpty = -1;
+  /// The slot of a position, or the empty one where it belongs.
+  std::size_t find(const std::array<double, 3>& position, const GrowingRows<Points>& positions);
+  void rebuild(std::size_t size, const GrowingRows<Points>& positions);
+  std::int32_t ordered_number_of(const std::array<double, 3>& position,
+                                 GrowingRows<Points>& positions);
+
+  std::vector<std::int32_t> slots_;  // a power of two of them, less than half in use
+  std::int64_t budget_ = 1024;       // slots that may still be looked at in vain
+  std::map<std::array<double, 3>, std::int32_t> ordered_;  // in use once the hashes fail
+};
 
 }  // namespace timbre::detail

@@ -41,7 +41,7 @@ class ObjReader {
       statement(cursor_.word());
       cursor_.skip_line();
     }
-    if (mesh_.coordinates.empty()) {
+    if (mesh_.vertex_count() == 0) {
       throw Error(ErrorKind::bad_input, "", "end of file", "no vertices ('v' lines)");
     }
     if (largest_index_ >= mesh_.vertex_count()) {

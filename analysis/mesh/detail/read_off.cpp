@@ -117,8 +117,8 @@ void read_face(Cursor& cursor, std::int64_t vertices, PolygonMesh& mesh) {
 
 PolygonMesh read_text(Cursor& cursor, const Layout& layout, const Counts& counts) {
   PolygonMesh mesh;
-  mesh.coordinates.reserve(3 * static_cast<std::size_t>(counts.vertices));
-  mesh.ends.reserve(static_cast<std::size_t>(counts.faces));
+  mesh.coordinates.reserve_rows(static_cast<std::size_t>(counts.vertices));
+  mesh.corners.reserve_rows(static_cast<std::size_t>(counts.faces));
   const auto next_line = [&](const char* kind, std::int64_t index) {
     cursor.skip_line();
     cursor.enter(kind, index);
@@ -153,8 +153,8 @@ PolygonMesh read_binary(Cursor cursor, std::endian order) {
   const Counts counts = checked(cursor, vertices, faces, kVertexBytes, kFaceBytes);
 
   PolygonMesh mesh;
-  mesh.coordinates.reserve(3 * static_cast<std::size_t>(counts.vertices));
-  mesh.ends.reserve(static_cast<std::size_t>(counts.faces));
+  mesh.coordinates.reserve_rows(static_cast<std::size_t>(counts.vertices));
+  mesh.corners.reserve_rows(static_cast<std::size_t>(counts.faces));
   for (std::int64_t i = 0; i < counts.vertices; ++i) {
     cursor.enter("vertex", i);
     const double x = finite_coordinate(cursor, order);

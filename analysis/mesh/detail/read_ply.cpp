@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -8,25 +9,31 @@
 namespace timbre::detail {
 namespace {
 
-double binary_number(Cursor& cursor, PlyType type, std::endian order) {
+// Calls `visit` with a value of the type.
+template <typename Visit>
+auto with_type(PlyType type, Visit visit) {
   switch (type) {
     case PlyType::int8:
-      return cursor.value<std::int8_t>(order);
+      return visit(std::int8_t{});
     case PlyType::uint8:
-      return cursor.value<std::uint8_t>(order);
+      return visit(std::uint8_t{});
     case PlyType::int16:
-      return cursor.value<std::int16_t>(order);
+      return visit(std::int16_t{});
     case PlyType::uint16:
-      return cursor.value<std::uint16_t>(order);
+      return visit(std::uint16_t{});
     case PlyType::int32:
-      return cursor.value<std::int32_t>(order);
+      return visit(std::int32_t{});
     case PlyType::uint32:
-      return cursor.value<std::uint32_t>(order);
+      return visit(std::uint32_t{});
     case PlyType::float32:
-      return cursor.value<float>(order);
+      return visit(float{});
     default:
-      return cursor.value<double>(order);
+      return visit(double{});
   }
+}
+
+double binary_number(Cursor& cursor, PlyType type, std::endian order) {
+  return with_type(type, [&](auto as) -> double { return cursor.value<decltype(as)>(order); });
 }
 
 // All integer types of PLY fit into a double exactly.
@@ -84,10 +91,13 @@ class PlyReader {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";
     if (!is_vertex && !is_face) mesh_.findings.add(Finding::ignored_data, element.name);
-    if (is_vertex) mesh_.coordinates.reserve(3 * static_cast<std::size_t>(element.count));
-    if (is_face) mesh_.ends.reserve(static_cast<std::size_t>(element.count));
+    if (is_vertex) mesh_.coordinates.reserve_rows(static_cast<std::size_t>(element.count));
+    if (is_face) mesh_.corners.reserve_rows(static_cast<std::size_t>(element.count));
     const std::vector<Role> roles = roles_of(element);
-    for (std::int64_t row = 0; row < element.count; ++row) {
+    std::int64_t row = 0;
+    if (header_.binary && is_vertex) row = read_plain_vertices(element, roles);
+    if (header_.binary && is_face) row = read_plain_faces(element);
+    for (; row < element.count; ++row) {
       cursor_.enter(is_vertex ? "vertex" : is_face ? "face" : "row", row);
       if (header_.binary) {
         read_binary_row(element, roles);
@@ -97,6 +107,75 @@ class PlyReader {
       if (is_vertex) mesh_.add_vertex(xyz_[0], xyz_[1], xyz_[2]);
       if (is_face) mesh_.end_polygon();
     }
+  }
+
+  // The vertices before the first that is odd in any way: most often all of them. The general
+  // reader goes on there, and knows what to say. Without lists all rows are of one size.
+  std::int64_t read_plain_vertices(const PlyElement& element, const std::vector<Role>& roles) {
+    std::array<std::size_t, 3> place{};
+    std::array<PlyType, 3> type{};
+    std::size_t row_size = 0;
+    for (std::size_t p = 0; p < roles.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (property.length) return 0;
+      if (roles[p] != Role::skipped) {
+        place[axis(roles[p])] = row_size;
+        type[axis(roles[p])] = property.type;
+      }
+      row_size += size_of(property.type);
+    }
+    constexpr std::size_t kBlock = 1024;  // rows, so that they are still at hand for y and z
+    const auto count = static_cast<std::size_t>(element.count);
+    std::size_t done = 0;
+    while (done < count) {
+      const std::size_t rows = std::min({kBlock, count - done, cursor_.left() / row_size});
+      if (rows == 0) break;
+      double* const xyz = mesh_.coordinates.extend(3 * rows);
+      for (std::size_t k = 0; k < 3; ++k) {
+        with_type(type[k], [&](auto as) {
+          const std::string_view column = cursor_.rest().substr(place[k]);
+          for (std::size_t i = 0; i < rows; ++i) {
+            xyz[3 * i + k] = value_of<decltype(as)>(column.substr(i * row_size), order_);
+          }
+        });
+      }
+      if (!std::all_of(xyz, xyz + 3 * rows, [](double x) { return std::isfinite(x); })) {
+        mesh_.coordinates.shrink(3 * rows);
+        break;
+      }
+      cursor_.take(rows * row_size);
+      done += rows;
+    }
+    return static_cast<std::int64_t>(done);
+  }
+
+  // The same for faces that are a list of 32-bit indices and nothing else.
+  std::int64_t read_plain_faces(const PlyElement& element) {
+    const PlyProperty& list = element.properties[0];
+    const bool is_plain = element.properties.size() == 1 && list.length == PlyType::uint8 &&
+                          (list.type == PlyType::int32 || list.type == PlyType::uint32);
+    if (!is_plain) return 0;
+    std::string_view bytes = cursor_.rest();
+    std::int64_t row = 0;
+    for (; row < element.count && !bytes.empty(); ++row) {
+      const auto length = value_of<std::uint8_t>(bytes, order_);
+      if (bytes.size() - 1 < 4U * length) break;
+      std::int32_t* const corners = mesh_.corners.extend(length);
+      bool are_in_range = true;
+      for (std::size_t c = 0; c < length; ++c) {
+        const auto index = value_of<std::uint32_t>(bytes.substr(1 + 4 * c), order_);
+        are_in_range = are_in_range && index < vertices_;
+        corners[c] = static_cast<std::int32_t>(index);
+      }
+      if (!are_in_range) {
+        mesh_.corners.shrink(length);
+        break;
+      }
+      mesh_.end_polygon();
+      bytes.remove_prefix(1 + 4U * length);
+    }
+    cursor_.take(cursor_.left() - bytes.size());
+    return row;
   }
 
   void read_binary_row(const PlyElement& element, const std::vector<Role>& roles) {
@@ -160,9 +239,10 @@ class PlyReader {
     if (cursor_.word().empty()) throw cursor_.error("fewer values than the header declares");
   }
 
-  double& coordinate(Role role) {
-    return xyz_[static_cast<std::size_t>(role) - static_cast<std::size_t>(Role::x)];
+  static std::size_t axis(Role role) {
+    return static_cast<std::size_t>(role) - static_cast<std::size_t>(Role::x);
   }
+  double& coordinate(Role role) { return xyz_[axis(role)]; }
 
   Cursor cursor_;
   PlyHeader header_;

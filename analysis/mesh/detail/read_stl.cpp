@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -10,106 +11,107 @@
 namespace timbre::detail {
 namespace {
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 // Neighbouring facets share their corners: that is the format's own rule, so equal positions
 // become one vertex, numbered by first appearance.
-PolygonMesh mesh_of_facets(std::vector<double> corners, bool soup, Findings findings) {
-  const std::size_t count = corners.size() / 3;
-  if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw Error(ErrorKind::bad_input, "", "size", "more than 2147483647 corners");
-  }
-  PolygonMesh mesh;
-  mesh.findings = std::move(findings);
-  mesh.corners.resize(count);
-  for (std::size_t end = 3; end <= count; end += 3) mesh.ends.push_back(end);
-  if (soup) {
-    for (std::size_t i = 0; i < count; ++i) mesh.corners[i] = static_cast<std::int32_t>(i);
-    mesh.coordinates = std::move(corners);
-    return mesh;
-  }
-  const std::vector<std::int32_t> first = first_at_position(corners.data(), count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto leader = static_cast<std::size_t>(first[i]);
-    if (leader == i) {
-      mesh.corners[i] = static_cast<std::int32_t>(mesh.vertex_count());
-      // + 0.0 makes -0 to 0, so that the vertex does not depend on which of the two came first.
-      mesh.add_vertex(corners[3 * i] + 0.0, corners[3 * i + 1] + 0.0, corners[3 * i + 2] + 0.0);
-    } else {
-      mesh.corners[i] = mesh.corners[leader];
-    }
-  }
-  const std::int64_t welded = static_cast<std::int64_t>(count) - mesh.vertex_count();
-  mesh.findings.add_count(Finding::welded, welded);
-  return mesh;
-}
-
-class StlTextReader {
+class FacetMesh {
  public:
-  explicit StlTextReader(const Cursor& cursor) : cursor_(cursor) {}
+  FacetMesh(std::size_t expected_facets, bool soup) : soup_(soup), table_(expected_facets / 2) {}
 
-  std::vector<double> read() {
-    while (cursor_.seek_word()) {
-      if (lower(cursor_.word()) != "solid") throw unexpected("solid");
-      for (next(); !is("endsolid"); next()) facet();  // what is left on the line is a name
-      cursor_.skip_line();
+  void add_corner(const std::array<double, 3>& position) {
+    if (mesh_.corners.size() ==
+        static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+      throw Error(ErrorKind::bad_input, "", "size", "more than 2147483647 corners");
     }
-    return std::move(corners_);
+    if (soup_) {
+      mesh_.corners.push_back(static_cast<std::int32_t>(mesh_.vertex_count()));
+      mesh_.add_vertex(position[0], position[1], position[2]);
+    } else {
+      // + 0.0 makes -0 to 0, so that the vertex does not depend on which of the two came first.
+      mesh_.corners.push_back(table_.number_of(
+          {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, mesh_.coordinates));
+    }
+  }
+  void end_facet() { mesh_.end_polygon(); }
+  void note_trailing_data() { mesh_.findings.add_count(Finding::trailing_data); }
+
+  PolygonMesh take() && {
+    const auto corners = static_cast<std::int64_t>(mesh_.corners.size());
+    if (!soup_) mesh_.findings.add_count(Finding::welded, corners - mesh_.vertex_count());
+    return std::move(mesh_);
   }
 
  private:
+  bool soup_;
+  PositionTable table_;
+  PolygonMesh mesh_;
+};
+
+class StlTextReader {
+ public:
+  StlTextReader(const Cursor& cursor, bool soup)
+      : cursor_(cursor), mesh_(cursor.left() / kUsualFacet, soup) {}
+
+  PolygonMesh read() {
+    while (cursor_.seek_word()) {
+      if (!is("solid", cursor_.word())) throw unexpected("solid");
+      for (next(); !is("endsolid", word_); next()) facet();  // what is left on the line is a name
+      cursor_.skip_line();
+    }
+    return std::move(mesh_).take();
+  }
+
+ private:
+  static constexpr std::size_t kUsualFacet = 200;  // bytes
+
   void facet() {
-    if (!is("facet") || lower(cursor_.word()) != "normal") {
+    if (!is("facet", word_) || !is("normal", cursor_.word())) {
       throw unexpected("facet normal' or 'endsolid");
     }
     if (cursor_.count_words() != 3) throw cursor_.error("a normal needs 3 numbers");
-    line("outer loop");
+    line("outer", "loop");
     for (int corner = 0; corner < 3; ++corner) {
       next();
-      if (!is("vertex")) throw unexpected("vertex");
-      for (int k = 0; k < 3; ++k) corners_.push_back(cursor_.number());
-      end_line();
+      if (!is("vertex", word_)) throw unexpected("vertex");
+      std::array<double, 3> position{};
+      for (double& c : position) c = cursor_.number();
+      if (const auto word = cursor_.word(); !word.empty()) {
+        throw cursor_.error(in_quotes(word) + " is one value too many");
+      }
+      mesh_.add_corner(position);
     }
     line("endloop");
     line("endfacet");
+    mesh_.end_facet();
   }
 
   // The first word of the next line that has one.
   void next() {
     cursor_.skip_line();
     if (!cursor_.seek_word()) throw cursor_.truncated();
-    word_ = lower(cursor_.word());
+    word_ = cursor_.word();
   }
 
-  void line(const std::string& expected) {
+  // A line of one word or of two.
+  void line(std::string_view first, std::string_view second = {}) {
     next();
-    std::string words = word_;
-    for (auto more = cursor_.word(); !more.empty(); more = cursor_.word())
-      words += " " + lower(more);
-    if (words != expected) throw unexpected(expected);
-  }
-
-  void end_line() {
-    if (const auto word = cursor_.word(); !word.empty()) {
-      throw cursor_.error(in_quotes(word) + " is one value too many");
+    if (!is(first, word_) || !is(second, cursor_.word()) || !cursor_.word().empty()) {
+      throw unexpected(std::string(first) + (second.empty() ? "" : " ") + std::string(second));
     }
   }
 
-  [[nodiscard]] bool is(std::string_view expected) const { return word_ == expected; }
+  static bool is(std::string_view expected, std::string_view word) {
+    return std::equal(
+        word.begin(), word.end(), expected.begin(), expected.end(),
+        [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+  }
 
   [[nodiscard]] Error unexpected(const std::string& expected) const {
     return cursor_.error("unexpected words; '" + expected + "' is needed");
   }
 
   Cursor cursor_;
-  std::string word_;
-  std::vector<double> corners_;
+  FacetMesh mesh_;
+  std::string_view word_;
 };
 
 }  // namespace
@@ -117,7 +119,7 @@ class StlTextReader {
 PolygonMesh read_stl_text(Cursor cursor, bool soup) {
   cursor.expect_text({});
   cursor.refuse_nul();
-  return mesh_of_facets(StlTextReader(cursor).read(), soup, {});
+  return StlTextReader(cursor, soup).read();
 }
 
 PolygonMesh read_stl_binary(Cursor cursor, bool soup) {
@@ -125,21 +127,23 @@ PolygonMesh read_stl_binary(Cursor cursor, bool soup) {
   constexpr std::uint64_t kAttribute = 2;
   cursor.take(80);
   const auto facets = cursor.value<std::uint32_t>(std::endian::little);
-  std::vector<double> corners;
-  corners.reserve(9 * static_cast<std::size_t>(facets));
+  FacetMesh mesh(facets, soup);
   for (std::uint32_t f = 0; f < facets; ++f) {
     cursor.enter("facet", f);
     cursor.take(kNormal);
-    for (int k = 0; k < 9; ++k) {
-      const auto value = cursor.value<float>(std::endian::little);
-      if (!std::isfinite(value)) throw cursor.error("coordinate is not finite");
-      corners.push_back(value);
+    for (int corner = 0; corner < 3; ++corner) {
+      std::array<double, 3> position{};
+      for (double& c : position) {
+        c = cursor.value<float>(std::endian::little);
+        if (!std::isfinite(c)) throw cursor.error("coordinate is not finite");
+      }
+      mesh.add_corner(position);
     }
+    mesh.end_facet();
     cursor.take(kAttribute);
   }
-  Findings findings;
-  if (cursor.left() > 0) findings.add_count(Finding::trailing_data);
-  return mesh_of_facets(std::move(corners), soup, std::move(findings));
+  if (cursor.left() > 0) mesh.note_trailing_data();
+  return std::move(mesh).take();
 }
 
 }  // namespace timbre::detail

@@ -180,6 +180,7 @@ Eigen::MatrixXd npy_matrix(std::string_view data, const NpyHeader& header) {
         "data", "is " + std::to_string(data.size()) + " bytes, another size than its header says");
   }
   Eigen::MatrixXd matrix(rows, cols);
+  if (count == 0) return matrix;  // of as many rows as the header likes, all of them empty
   for (std::int64_t i = 0; i < rows; ++i) {
     for (std::int64_t j = 0; j < cols; ++j) {
       Scalar value{};

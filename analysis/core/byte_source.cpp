@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <new>
 #include <system_error>
+#include <vector>
 
 #include "timbre/analysis/core/error.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::size_t kHead = 4096;
 constexpr std::size_t kChunk = std::size_t{1} << 20;
+constexpr std::size_t kPiece = std::size_t{1} << 16;  // of what is unpacked
 constexpr std::uint64_t kBombSize = std::uint64_t{64} << 20;
 constexpr std::uint64_t kBombRatio = 200;
 
@@ -121,16 +123,14 @@ class Inflater {
   void unpack_member(std::string_view& packed, std::string& content, std::uint64_t limit) {
     if (inflateReset(&stream_) != Z_OK) throw std::bad_alloc();
     for (int state = Z_OK; state != Z_STREAM_END;) {
-      const std::size_t before = content.size();
-      content.resize(before + kChunk);
       stream_.next_in = reinterpret_cast<const Bytef*>(packed.data());
       stream_.avail_in = static_cast<uInt>(std::min(packed.size(), kChunk));
-      stream_.next_out = reinterpret_cast<Bytef*>(content.data() + before);
-      stream_.avail_out = kChunk;
+      stream_.next_out = reinterpret_cast<Bytef*>(piece_.data());
+      stream_.avail_out = kPiece;
       const std::size_t offered = stream_.avail_in;
       state = inflate(&stream_, Z_NO_FLUSH);
       packed.remove_prefix(offered - stream_.avail_in);
-      content.resize(before + kChunk - stream_.avail_out);
+      content.append(piece_.data(), kPiece - stream_.avail_out);
       if (content.size() > limit) {
         throw Error(ErrorKind::bad_input, "", "gzip",
                     "expands beyond the limit of " + std::to_string(limit) + " bytes");
@@ -146,6 +146,8 @@ class Inflater {
 
  private:
   z_stream stream_{};
+  // Of its own: space made in `content` would be filled anew for each member, however small.
+  std::vector<char> piece_ = std::vector<char>(kPiece);
 };
 
 }  // namespace

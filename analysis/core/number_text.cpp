@@ -42,7 +42,7 @@ bool is_tiny(std::string_view number) {
   const auto [end, error] =
       std::from_chars(exponent.data(), exponent.data() + exponent.size(), power);
   if (error == std::errc::result_out_of_range) return exponent[0] == '-';
-  return power + place < 0;
+  return power < -place;  // their sum may be beyond 64 bits
 }
 
 // An exponent of up to three digits at `at`, which moves behind it; 0 if there is none.

@@ -32,14 +32,31 @@ constexpr int kCompressionLevel = 3;
 
 std::string real_bits(double value) { return std::to_string(std::bit_cast<std::uint64_t>(value)); }
 
+// memcpy must not be given the null of an empty array, not even to copy nothing.
+void copy_bytes(void* to, const void* from, std::size_t count) {
+  if (count > 0) std::memcpy(to, from, count);
+}
+
+// A checksum shows damage, not what a program other than ours may have put there.
+void require_sound(const TriangleMesh& mesh) {
+  const auto refuse = [](const char* cause) {
+    throw Error(ErrorKind::bad_input, "", "mesh", cause);
+  };
+  if (!mesh.vertices.allFinite()) refuse("holds a coordinate that is not finite");
+  if (mesh.faces.size() == 0) return;
+  if (mesh.faces.minCoeff() < 0 || mesh.faces.maxCoeff() >= mesh.vertices.rows()) {
+    refuse("holds a corner that is no vertex");
+  }
+}
+
 }  // namespace
 
 std::string pack_mesh(const TriangleMesh& mesh) {
   const std::size_t points = static_cast<std::size_t>(mesh.vertices.size()) * sizeof(double);
   const std::size_t corners = static_cast<std::size_t>(mesh.faces.size()) * sizeof(std::int32_t);
   std::string plain(points + corners, '\0');
-  std::memcpy(plain.data(), mesh.vertices.data(), points);
-  std::memcpy(plain.data() + points, mesh.faces.data(), corners);
+  copy_bytes(plain.data(), mesh.vertices.data(), points);
+  copy_bytes(plain.data() + points, mesh.faces.data(), corners);
   std::string packed(ZSTD_compressBound(plain.size()), '\0');
   const std::size_t size =
       ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kCompressionLevel);
@@ -65,20 +82,21 @@ TriangleMesh unpack_mesh(std::string_view bytes, std::int64_t vertices, std::int
   TriangleMesh mesh;
   mesh.vertices.resize(vertices, 3);
   mesh.faces.resize(faces, 3);
-  std::memcpy(mesh.vertices.data(), plain.data(), points);
-  std::memcpy(mesh.faces.data(), plain.data() + points, corners);
+  copy_bytes(mesh.vertices.data(), plain.data(), points);
+  copy_bytes(mesh.faces.data(), plain.data() + points, corners);
+  require_sound(mesh);
   return mesh;
 }
 
 std::string pack_numbers(const Eigen::VectorXd& values) {
   std::string bytes(static_cast<std::size_t>(values.size()) * sizeof(double), '\0');
-  std::memcpy(bytes.data(), values.data(), bytes.size());
+  copy_bytes(bytes.data(), values.data(), bytes.size());
   return bytes;
 }
 
 Eigen::VectorXd unpack_numbers(std::string_view bytes) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(bytes.size() / sizeof(double)));
-  std::memcpy(values.data(), bytes.data(), bytes.size() / sizeof(double) * sizeof(double));
+  copy_bytes(values.data(), bytes.data(), bytes.size() / sizeof(double) * sizeof(double));
   return values;
 }
 

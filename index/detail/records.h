@@ -27,7 +27,8 @@ struct Blob {
 
 /// zstd over the coordinates (float64) and then the indices (int32), little-endian.
 [[nodiscard]] std::string pack_mesh(const TriangleMesh& mesh);
-/// @throws Error  bad_input if the bytes do not hold exactly this many
+/// @throws Error  bad_input if the bytes do not hold exactly this many, or no sound mesh: finite
+///                coordinates, corners that are vertices
 [[nodiscard]] TriangleMesh unpack_mesh(std::string_view bytes, std::int64_t vertices,
                                        std::int64_t faces);
 

@@ -105,7 +105,10 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   const std::string_view word = cursor.word();
   const bool is_cut = cursor.left() == 0 && !whole;  // perhaps inside the word
   refuse_known_mistakes(word, cursor.word());
-  if (is_off_keyword(word) && !is_cut) return FileFormat::off;
+  if (is_off_keyword(word) && !is_cut) {
+    Cursor(head.substr(0, static_cast<std::size_t>(word.data() - head.data()))).refuse_nul();
+    return FileFormat::off;
+  }
   if (is_stl_header(head, word, ending)) {
     require_stl_size(head, size);
     return FileFormat::stl_binary;

@@ -109,6 +109,13 @@ TEST(FromNpy, RefusesWhatItCannotTrust) {
             "data: is 0 bytes, another size than its header says");
 }
 
+TEST(FromNpy, DoesNotWalkThroughRowsOfNothing) {
+  const Eigen::MatrixXd matrix = from_npy(npy_file<double>(
+      "{'descr': '<f8', 'fortran_order': False, 'shape': (9223372036854775807, 0), }", {}));
+  EXPECT_EQ(matrix.rows(), 9223372036854775807);
+  EXPECT_EQ(matrix.cols(), 0);
+}
+
 TEST(FromNpy, RefusesEveryOtherHeaderInTheSameWords) {
   const std::string words = "header: is not as NumPy writes it";
   for (const char* header :

@@ -112,6 +112,14 @@ TEST(UnpackGzip, JoinsMembers) {
   EXPECT_EQ(unpack_gzip(gzip("ab") + gzip("") + gzip(large), kLimit), "ab" + large);
 }
 
+// Space once made and filled for each of them took minutes here.
+TEST(UnpackGzip, TakesAsManyMembersAsThereAre) {
+  std::string packed;
+  const std::string member = gzip("ab");
+  for (int i = 0; i < 100000; ++i) packed += member;
+  EXPECT_EQ(unpack_gzip(packed, kLimit).size(), 200000U);
+}
+
 TEST(UnpackGzip, RefusesDamage) {
   const std::string packed = gzip("some content that is long enough to be cut");
   for (std::size_t size = 0; size < packed.size(); ++size) {

@@ -38,6 +38,9 @@ TEST(ParseDouble, TellsTooLargeFromTooSmall) {
   EXPECT_FALSE(parse_double("-1e400"));
   EXPECT_FALSE(parse_double("1" + std::string(400, '0')));
   EXPECT_FALSE(parse_double("1e99999999999999999999"));
+  EXPECT_FALSE(parse_double("1e9223372036854775807"));
+  EXPECT_FALSE(parse_double("10e+9223372036854775807"));
+  EXPECT_EQ(parse_double("0.01e-9223372036854775808"), 0.0);
   EXPECT_EQ(parse_double("1e-999"), 0.0);
   EXPECT_EQ(parse_double("0." + std::string(400, '0') + "1"), 0.0);
   EXPECT_EQ(parse_double("1e-99999999999999999999"), 0.0);

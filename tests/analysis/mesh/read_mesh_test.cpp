@@ -105,6 +105,7 @@ TEST(ReadMesh, SaysWhatAFileSeemsToBe) {
            "line 1: a Git LFS pointer, not the mesh itself; fetch it with 'git lfs pull'"},
           {"\x1f\x8b\x08", "byte 0: gzip data; it is unpacked when the name ends in .gz"},
           {std::string("ab\0c", 4), "byte 2: NUL byte in text"},
+          {std::string("#\0\n", 3) + kOff, "byte 1: NUL byte in text"},
       },
       "m.dat");
   EXPECT_EQ(refusal("short", "m.stl"),

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -14,8 +16,6 @@
 
 namespace timbre {
 namespace {
-
-constexpr std::size_t kListed = 5;
 
 using Index = std::int32_t;
 
@@ -64,17 +64,26 @@ class Sets {
   std::vector<bool> turned_;
 };
 
-// The corners of the triangles that have three different ones.
-std::vector<Index> proper_corners(const Faces& faces) {
+// The triangles that have three different corners.
+std::vector<Index> proper_faces(const Faces& faces) {
   if (faces.size() > std::numeric_limits<Index>::max()) {
     throw Error(ErrorKind::bad_input, "", "faces", "more than 715827882 triangles");
   }
-  std::vector<Index> corners;
-  corners.reserve(static_cast<std::size_t>(faces.size()));
+  std::vector<Index> proper;
+  proper.reserve(static_cast<std::size_t>(faces.rows()));
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
     const auto corner = faces.row(f);
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
-    corners.insert(corners.end(), {corner[0], corner[1], corner[2]});
+    proper.push_back(static_cast<Index>(f));
+  }
+  return proper;
+}
+
+std::vector<Index> corners_of(const Faces& faces, const std::vector<Index>& some) {
+  std::vector<Index> corners;
+  corners.reserve(3 * some.size());
+  for (const Index f : some) {
+    corners.insert(corners.end(), {faces(f, 0), faces(f, 1), faces(f, 2)});
   }
   return corners;
 }
@@ -82,12 +91,13 @@ std::vector<Index> proper_corners(const Faces& faces) {
 // Corner k of the f-th such triangle is number 3 f + k; so is the edge from it to the next.
 class Examination {
  public:
-  explicit Examination(const TriangleMesh& mesh)
+  Examination(const TriangleMesh& mesh, std::size_t listed)
       : mesh_(mesh),
+        listed_(listed),
         vertex_count_(static_cast<std::size_t>(mesh.vertices.rows())),
-        unit_(unit_of(
-            {mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size())})),
-        corners_(proper_corners(mesh.faces)),
+        unit_(unit_of({mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size())})),
+        proper_(proper_faces(mesh.faces)),
+        corners_(corners_of(mesh.faces, proper_)),
         fans_(corners_.size()),
         sides_(corners_.size() / 3) {}
 
@@ -95,6 +105,8 @@ class Examination {
     found_.vertices = mesh_.vertices.rows();
     found_.faces = mesh_.faces.rows();
     find_odd_faces();
+    measure_triangles();
+    find_coincident_vertices();
     find_edges();
     find_components();
     join_across_edges();
@@ -110,6 +122,10 @@ class Examination {
   [[nodiscard]] const double* position(Index vertex) const {
     return mesh_.vertices.data() + 3 * at(vertex);
   }
+  // In units of `unit_`.
+  [[nodiscard]] Eigen::Vector3d point(std::size_t corner) const {
+    return Eigen::Map<const Eigen::Vector3d>(position(corners_[corner])) / unit_;
+  }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
   static Index next(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
   [[nodiscard]] std::pair<Index, Index> ends(Index edge) const {
@@ -124,8 +140,8 @@ class Examination {
       sorted[f] = {corner[0], corner[1], corner[2]};
       std::sort(sorted[f].begin(), sorted[f].end());
       const bool repeats = sorted[f][0] == sorted[f][1] || sorted[f][1] == sorted[f][2];
-      if (repeats || has_no_area(position(corner[0]), position(corner[1]),
-                                         position(corner[2]), 1.0 / unit_)) {
+      if (repeats ||
+          has_no_area(position(corner[0]), position(corner[1]), position(corner[2]), 1.0 / unit_)) {
         note(found_.degenerate_faces, found_.first_degenerate_faces, static_cast<Index>(f));
       }
     }
@@ -135,6 +151,58 @@ class Examination {
     for (std::size_t f = 0; f < faces; ++f) {
       if (at(first[f]) == f) continue;
       note(found_.duplicate_faces, found_.first_duplicate_faces, static_cast<Index>(f));
+    }
+  }
+
+  // Angles and lengths; the smallest angle lies opposite the shortest edge.
+  void measure_triangles() {
+    if (corner_count() == 0) return;
+    double smallest = 60.0;
+    double shortest = std::numeric_limits<double>::infinity();
+    double longest = 0.0;
+    double sum = 0.0;
+    double largest_coordinate = 0.0;
+    for (std::size_t c = 0; c < corner_count(); c += 3) {
+      const std::array<Eigen::Vector3d, 3> p = {point(c), point(c + 1), point(c + 2)};
+      std::array<double, 3> opposite{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        opposite[k] = (p[(k + 2) % 3] - p[(k + 1) % 3]).stableNorm();
+        sum += opposite[k];
+        largest_coordinate = std::max(largest_coordinate, p[k].cwiseAbs().maxCoeff());
+      }
+      const auto least = static_cast<std::size_t>(
+          std::min_element(opposite.begin(), opposite.end()) - opposite.begin());
+      shortest = std::min(shortest, opposite[least]);
+      longest = std::max(longest, *std::max_element(opposite.begin(), opposite.end()));
+      const double angle = angle_at(p[least], p[(least + 1) % 3], p[(least + 2) % 3]);
+      smallest = std::min(smallest, angle);
+      if (angle > 0.0 && angle < kThinAngle) {
+        note(found_.thin_faces, found_.first_thin_faces, proper_[c / 3]);
+      }
+    }
+    found_.smallest_angle = smallest;
+    found_.shortest_edge = shortest * unit_;
+    found_.longest_edge = longest * unit_;
+    const double mean = sum / static_cast<double>(corner_count());
+    found_.mean_edge = mean * unit_;
+    const double grain = std::numeric_limits<double>::epsilon() * largest_coordinate;
+    if (mean > grain) found_.digits = std::log10(mean / grain);
+  }
+
+  // Degrees; 0 where the triangle has no area to rounding.
+  static double angle_at(const Eigen::Vector3d& corner, const Eigen::Vector3d& a,
+                         const Eigen::Vector3d& b) {
+    if (has_no_area(corner.data(), a.data(), b.data(), 1.0)) return 0.0;
+    const Eigen::Vector3d u = (a - corner).stableNormalized();
+    const Eigen::Vector3d v = (b - corner).stableNormalized();
+    return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
+  }
+
+  void find_coincident_vertices() {
+    const std::span coordinates(mesh_.vertices.data(),
+                                static_cast<std::size_t>(mesh_.vertices.size()));
+    for (const Index vertex : detail::repeated_positions(coordinates)) {
+      note(found_.coincident_vertices, found_.first_coincident_vertices, vertex);
     }
   }
 
@@ -149,9 +217,12 @@ class Examination {
     for (const Index edge : leader_) ++triangles_at_[at(edge)];
     bad_vertex_.assign(vertex_count_, false);
     for (std::size_t e = 0; e < corner_count(); ++e) {
-      if (triangles_at_[e] == 1) ++found_.boundary_edges;
-      if (triangles_at_[e] < 3) continue;
+      if (triangles_at_[e] == 0 || triangles_at_[e] == 2) continue;
       const auto [low, high] = ends(static_cast<Index>(e));
+      if (triangles_at_[e] == 1) {
+        note(found_.boundary_edges, found_.first_boundary_edges, {low, high});
+        continue;
+      }
       bad_vertex_[at(low)] = bad_vertex_[at(high)] = true;
       note(found_.nonmanifold_edges, found_.first_nonmanifold_edges, {low, high});
     }
@@ -238,7 +309,7 @@ class Examination {
     double area = 0.0;
     for (std::size_t c = 0; c < corner_count(); c += 3) {
       area += triangle_area(position(corners_[c]), position(corners_[c + 1]),
-                                    position(corners_[c + 2]), 1.0 / unit_);
+                            position(corners_[c + 2]), 1.0 / unit_);
     }
     found_.area = area * unit_ * unit_;
     const bool closed = found_.boundary_edges == 0 && found_.nonmanifold_edges == 0;
@@ -250,9 +321,6 @@ class Examination {
   // Signed tetrahedra over a point of the mesh, for each set of triangles turned alike.
   double volume() {
     using Vector = Eigen::Vector3d;
-    const auto point = [&](std::size_t c) {
-      return Vector(Eigen::Map<const Vector>(position(corners_[c])) / unit_);
-    };
     const Vector origin = point(0);
     std::vector<double> signed_volume(corner_count() / 3, 0.0);
     std::vector<std::int64_t> unturned(corner_count() / 3, 0);
@@ -273,14 +341,17 @@ class Examination {
   }
 
   template <typename Place>
-  static void note(std::int64_t& count, std::vector<Place>& first,
-                   const std::type_identity_t<Place>& place) {
-    if (count++ < static_cast<std::int64_t>(kListed)) first.push_back(place);
+  void note(std::int64_t& count, std::vector<Place>& first,
+            const std::type_identity_t<Place>& place) const {
+    ++count;
+    if (first.size() < listed_) first.push_back(place);
   }
 
   const TriangleMesh& mesh_;
+  std::size_t listed_;
   std::size_t vertex_count_;
   double unit_;
+  std::vector<Index> proper_;  // faces
   std::vector<Index> corners_;
   Sets fans_;                        // of corners around a vertex
   Sets sides_;                       // of triangles; turned: seen from the other side
@@ -292,6 +363,8 @@ class Examination {
 
 }  // namespace
 
-Diagnosis diagnose(const TriangleMesh& mesh) { return Examination(mesh).run(); }
+Diagnosis diagnose(const TriangleMesh& mesh, std::size_t listed) {
+  return Examination(mesh, listed).run();
+}
 
 }  // namespace timbre

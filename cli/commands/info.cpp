@@ -22,6 +22,13 @@ json or_null(const std::optional<Value>& value) {
 // JSON knows no infinity.
 json or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
 
+json edges_to_json(const Diagnosis& found) {
+  return {{"shortest", or_null(found.shortest_edge)},
+          {"mean", or_null(found.mean_edge)},
+          {"longest", or_null(found.longest_edge)},
+          {"digits", found.digits}};
+}
+
 json to_json(const std::string& path, const MeshFile& file, const Diagnosis& found) {
   json warnings = json::array();
   for (const ReadWarning& warning : file.warnings) {
@@ -43,7 +50,11 @@ json to_json(const std::string& path, const MeshFile& file, const Diagnosis& fou
           {"nonmanifold_vertices", found.nonmanifold_vertices},
           {"degenerate_faces", found.degenerate_faces},
           {"duplicate_faces", found.duplicate_faces},
+          {"thin_faces", found.thin_faces},
+          {"coincident_vertices", found.coincident_vertices},
           {"unused_vertices", found.unused_vertices},
+          {"smallest_angle", found.smallest_angle},
+          {"edges", edges_to_json(found)},
           {"area", or_null(found.area)},
           {"volume", found.volume ? or_null(*found.volume) : json()},
           {"warnings", std::move(warnings)}};
@@ -82,6 +93,23 @@ std::string surface(const Diagnosis& found) {
   return text;
 }
 
+// What coordinates and sizes cost.
+void add_about_sizes(const Diagnosis& found, std::vector<std::string>& lines) {
+  constexpr double kUneven = 1e4;
+  constexpr double kFewDigits = 8.0;
+  if (found.shortest_edge > 0.0 && found.longest_edge / found.shortest_edge > kUneven) {
+    lines.push_back("edge lengths differ by a factor of " +
+                    to_short_text(found.longest_edge / found.shortest_edge, 2) +
+                    "; eigenvalues keep fewer digits, and eigenfunctions no detail where edges "
+                    "are long");
+  }
+  if (found.faces > 0 && found.digits < kFewDigits) {
+    lines.push_back("far from the origin: coordinates hold about " +
+                    to_short_text(std::floor(found.digits), 2) +
+                    " digits of an edge's length; no operator can know more");
+  }
+}
+
 // What was found, where, and what it means for the spectrum.
 std::vector<std::string> findings(const Diagnosis& found) {
   std::vector<std::string> lines;
@@ -97,7 +125,7 @@ std::vector<std::string> findings(const Diagnosis& found) {
   add(found.boundary_loops, "boundary loops", "", "the natural (Neumann) condition holds there");
   add(found.nonmanifold_edges, "edges of three or more triangles",
       list(found.first_nonmanifold_edges, found.nonmanifold_edges),
-      "heat flows through all sheets; eigenvalues stay valid");
+      "heat flows through all sheets; 'robust' joins them as they lie around the edge");
   add(found.nonmanifold_vertices, "non-manifold vertices",
       list(found.first_nonmanifold_vertices, found.nonmanifold_vertices),
       "the sheets are joined at a point only, which low frequencies hardly feel");
@@ -107,18 +135,26 @@ std::vector<std::string> findings(const Diagnosis& found) {
   add(found.degenerate_faces, "triangles without area",
       list(found.first_degenerate_faces, found.degenerate_faces),
       "edge lengths are raised a little (mollified) to keep the weights finite");
+  add(found.thin_faces, "triangles with an angle below 1 degree",
+      list(found.first_thin_faces, found.thin_faces),
+      "plain cotangents are inaccurate there; 'robust' flips edges intrinsically first");
   add(found.duplicate_faces, "triangles there already",
       list(found.first_duplicate_faces, found.duplicate_faces),
       "their area counts twice, which lowers eigenvalues nearby");
+  add(found.coincident_vertices, "vertices at the place of an earlier one",
+      list(found.first_coincident_vertices, found.coincident_vertices),
+      "they stay apart: a seam along them is a slit, open like a boundary, until you weld them");
   add(found.unused_vertices, "vertices in no triangle",
       list(found.first_unused_vertices, found.unused_vertices),
       "they keep their number, eigenfunctions are 0 there");
+  add_about_sizes(found, lines);
   return lines;
 }
 
 // The diagnosis says the same, with its consequence.
 bool is_in_findings(const ReadWarning& warning) {
-  return warning.code == "duplicate-face" || warning.code == "unused-vertex";
+  return warning.code == "duplicate-face" || warning.code == "unused-vertex" ||
+         warning.code == "coincident-vertex";
 }
 
 std::string to_text(const std::string& path, const MeshFile& file, const Diagnosis& found) {
@@ -126,7 +162,12 @@ std::string to_text(const std::string& path, const MeshFile& file, const Diagnos
                      counted(found.vertices, "vertex", "vertices") + ", " +
                      counted(found.faces, "triangle", "triangles") + "\n";
   text += "surface: " + surface(found) + "\n";
-  if (found.faces > 0) text += "area: " + to_short_text(found.area, 6) + "\n";
+  if (found.faces > 0) {
+    text += "area: " + to_short_text(found.area, 6) + "\n";
+    text += "edges: " + to_short_text(found.shortest_edge, 3) + " to " +
+            to_short_text(found.longest_edge, 3) + ", mean " + to_short_text(found.mean_edge, 3) +
+            "; smallest angle " + to_short_text(found.smallest_angle, 2) + " degrees\n";
+  }
   if (found.volume) text += "volume: " + to_short_text(*found.volume, 6) + "\n";
   for (const std::string& line : findings(found)) text += "- " + line + "\n";
   for (const ReadWarning& warning : file.warnings) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -176,6 +178,57 @@ TEST(Diagnose, IsNotMisledByScale) {
     EXPECT_EQ(found.degenerate_faces, 0);
     EXPECT_EQ(found.genus, 1);
   }
+}
+
+TEST(Diagnose, MeasuresAnglesAndEdges) {
+  const Diagnosis found = diagnose(make_mesh({{0, 0, 0}, {3, 0, 0}, {0, 4, 0}}, {{0, 1, 2}}));
+  EXPECT_DOUBLE_EQ(found.smallest_angle, std::atan2(3, 4) * 180 / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(found.shortest_edge, 3.0);
+  EXPECT_DOUBLE_EQ(found.longest_edge, 5.0);
+  EXPECT_DOUBLE_EQ(found.mean_edge, 4.0);
+  EXPECT_EQ(found.thin_faces, 0);
+  EXPECT_NEAR(diagnose(octahedron()).smallest_angle, 60.0, 1e-12);
+}
+
+TEST(Diagnose, NamesThinTriangles) {
+  // The second is a needle, the third has no area, the fourth repeats a corner.
+  const TriangleMesh mesh = make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 1e-5, 0}, {2, 0, 0}},
+                                      {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {2, 2, 1}});
+  const Diagnosis found = diagnose(mesh);
+  EXPECT_EQ(found.thin_faces, 1);
+  EXPECT_EQ(found.first_thin_faces, (std::vector<std::int32_t>{1}));
+  EXPECT_EQ(found.degenerate_faces, 2);
+  EXPECT_EQ(found.smallest_angle, 0.0);
+}
+
+TEST(Diagnose, AnglesDoNotDependOnScale) {
+  for (const double scale : {1e-300, 1e-150, 1e150, 1e300}) {
+    TriangleMesh mesh = tetrahedron();
+    mesh.vertices *= scale;
+    EXPECT_NEAR(diagnose(mesh).smallest_angle, 45.0, 1e-12) << scale;
+    EXPECT_NEAR(diagnose(mesh).longest_edge / scale, std::sqrt(2.0), 1e-12) << scale;
+    EXPECT_EQ(diagnose(mesh).thin_faces, 0) << scale;
+  }
+}
+
+TEST(Diagnose, CountsVerticesAtThePlaceOfEarlierOnes) {
+  const Diagnosis found = diagnose(join(tetrahedron(), tetrahedron()));
+  EXPECT_EQ(found.coincident_vertices, 4);
+  EXPECT_EQ(found.first_coincident_vertices, (std::vector<std::int32_t>{4, 5, 6, 7}));
+}
+
+TEST(Diagnose, TellsHowManyDigitsAFarOriginLeaves) {
+  TriangleMesh mesh = tetrahedron();
+  EXPECT_GT(diagnose(mesh).digits, 15.0);
+  mesh.vertices.array() += 1e10;
+  EXPECT_NEAR(diagnose(mesh).digits, 5.7, 0.2);
+  mesh.vertices.setZero();
+  EXPECT_EQ(diagnose(mesh).digits, 0.0);
+}
+
+TEST(Diagnose, ListsAsManyPlacesAsAskedFor) {
+  EXPECT_EQ(diagnose(grid(4)).first_boundary_edges.size(), 5U);
+  EXPECT_EQ(diagnose(grid(4), 100).first_boundary_edges.size(), 16U);
 }
 
 }  // namespace

@@ -179,7 +179,10 @@ MeshFile read_mesh_file(const Context& context, const std::string& path) {
 
 MeshFile load_mesh(const Context& context, const std::string& path) {
   MeshFile file = read_mesh_file(context, path);
-  for (const ReadWarning& warning : file.warnings) context.note(path + ": " + warning.message);
+  for (const ReadWarning& warning : file.warnings) {
+    // Without faces the command itself will say that it cannot go on.
+    if (warning.code != "no-faces") context.note(path + ": " + warning.message);
+  }
   return file;
 }
 

@@ -78,7 +78,9 @@ SoundFaces sound_faces(const Faces& faces, const Points& lengths, const HasArea&
   }
   if (kept.faces.empty()) {
     throw Error(ErrorKind::bad_input, "", "faces",
-                "none with three different corners; a Laplacian needs at least one");
+                faces.rows() == 0
+                    ? "there are none, only points; a Laplacian needs a surface"
+                    : "none with three different corners; a Laplacian needs at least one");
   }
   return kept;
 }

@@ -211,7 +211,7 @@ TEST(ComputeOperator, RefusesAMeshWithoutArea) {
             "faces: none with three different corners; a Laplacian needs at least one");
   mesh.faces.resize(0, 3);
   EXPECT_EQ(message(mesh),
-            "faces: none with three different corners; a Laplacian needs at least one");
+            "faces: there are none, only points; a Laplacian needs a surface");
 }
 
 TEST(ComputeOperator, RefusesAreasBeyondADouble) {

@@ -152,8 +152,13 @@ void add_common_options(CLI::App& command, Context& context, bool output) {
   command.add_flag("--json", context.json, "one JSON document on standard output");
   command.add_flag("-q,--quiet", context.quiet, "no progress and no notes");
   if (output) {
-    command.add_option("-o,--output", context.output,
-                       "where the result goes; - for standard output");
+    // `-o "$unset"` must not lose the result.
+    const auto name_is_there = [](const std::string& name) {
+      return std::string(name.empty() ? "a name is missing" : "");
+    };
+    command
+        .add_option("-o,--output", context.output, "where the result goes; - for standard output")
+        ->check(name_is_there);
     command.add_flag("--force", context.force, "let the result replace an existing file");
   }
 }

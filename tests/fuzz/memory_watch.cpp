@@ -9,9 +9,14 @@
 #endif
 
 #ifdef TIMBRE_COUNTS_MEMORY
-#include <sanitizer/allocator_interface.h>
-
 #include <algorithm>
+
+// Of sanitizer/allocator_interface.h, which Debian's g++ does not bring.
+extern "C" {
+int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
+                                              void (*)(const volatile void*));
+std::size_t __sanitizer_get_allocated_size(const volatile void*);
+}
 #endif
 
 namespace timbre::fuzz {
@@ -31,8 +36,7 @@ void on_malloc(const volatile void*, std::size_t size) {
 
 void on_free(const volatile void* block) {
   if (!watching || block == nullptr) return;
-  taken -=
-      static_cast<std::ptrdiff_t>(__sanitizer_get_allocated_size(const_cast<const void*>(block)));
+  taken -= static_cast<std::ptrdiff_t>(__sanitizer_get_allocated_size(block));
 }
 
 const int installed = __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free);

@@ -158,8 +158,8 @@ class PlyReader {
     std::string_view bytes = cursor_.rest();
     std::int64_t row = 0;
     for (; row < element.count && !bytes.empty(); ++row) {
-      const auto length = value_of<std::uint8_t>(bytes, order_);
-      if (bytes.size() - 1 < 4U * length) break;
+      const std::size_t length = value_of<std::uint8_t>(bytes, order_);
+      if (bytes.size() - 1 < 4 * length) break;
       std::int32_t* const corners = mesh_.corners.extend(length);
       bool are_in_range = true;
       for (std::size_t c = 0; c < length; ++c) {
@@ -172,7 +172,7 @@ class PlyReader {
         break;
       }
       mesh_.end_polygon();
-      bytes.remove_prefix(1 + 4U * length);
+      bytes.remove_prefix(1 + 4 * length);
     }
     cursor_.take(cursor_.left() - bytes.size());
     return row;

@@ -29,7 +29,6 @@ constexpr int kSkyRays = 6;
 constexpr float kReach = 0.9F;
 // Rays start this far off the surface. Less than a pixel; more than rounding.
 constexpr float kLift = 1e-3F;
-constexpr float kMarkerRadius = 0.028F;
 
 struct Pixel {
   Colour direct = Colour::Zero();
@@ -273,7 +272,7 @@ std::vector<Image> render(const SurfaceLook& look, const std::vector<View>& view
   const RenderMesh mesh = make_render_mesh(look.mesh, options.up);
   std::vector<Ball> balls;
   for (const Marker& marker : look.markers) {
-    balls.push_back({mesh.points.row(marker.vertex).cast<float>(), kMarkerRadius});
+    balls.push_back({mesh.points.row(marker.vertex).cast<float>(), marker.radius});
   }
   const RayScene rays(mesh.points, mesh.faces, balls);
   const SurfaceShader shader(look, mesh, balls);

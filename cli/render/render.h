@@ -30,7 +30,8 @@ struct Isolines {
 /// A ball on a vertex.
 struct Marker {
   std::int32_t vertex = 0;
-  Colour colour;  ///< sRGB
+  Colour colour;          ///< sRGB
+  float radius = 0.028F;  ///< in units of half the mesh's largest extent
 };
 
 using VertexColours = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;

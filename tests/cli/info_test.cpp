@@ -83,10 +83,13 @@ TEST_F(Info, SaysInWordsWhatAFindingMeans) {
                          ": off, 10 vertices, 8 triangles\n"
                          "surface: 1 component, 1 boundary loop, manifold, orientable, genus 0\n"
                          "area: 1\n"
-                         "- boundary loops: 1; the natural (Neumann) condition holds there\n"
+                         "edges: 0.5 to 0.707, mean 0.569; smallest angle 45 degrees\n"
+                         "- boundary loops: 1; the natural (Neumann) condition holds there; "
+                         "--boundary dirichlet sets functions to 0\n"
+                         "- vertices at the place of an earlier one: 1 (9); they stay apart: a "
+                         "seam along them is a slit, open like a boundary, until you weld them\n"
                          "- vertices in no triangle: 1 (9); they keep their number, eigenfunctions "
-                         "are 0 there\n"
-                         "- file: vertices at the position of an earlier one: 1 (vertex 9)\n");
+                         "are 0 there\n");
   EXPECT_EQ(ran.err, "");
 }
 
@@ -104,6 +107,41 @@ TEST_F(Info, TellsUsageErrorsApart) {
   EXPECT_EQ(run_command("info --no-such-option").exit_code, 2);
   EXPECT_EQ(run_command("info --size-limit x a.off").exit_code, 2);
   EXPECT_EQ(run_command("info --help").exit_code, 0);
+}
+
+TEST_F(Info, WritesAPageWithEachDefectMarked) {
+  // A fin on a closed body: an edge of three triangles, and a boundary.
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices.conservativeResize(5, 3);
+  mesh.vertices.row(4) << 2, 2, 2;
+  mesh.faces.conservativeResize(5, 3);
+  mesh.faces.row(4) << 1, 2, 4;
+  const std::string file = put("<fin>.off", mesh);
+  const std::string page = folder_ / "page.html";
+  const Ran ran = run_command("info " + file + " --report " + page);
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("edges of three or more triangles: 1 (1-2)"), std::string::npos);
+  const std::string html = file_content(page);
+  EXPECT_NE(html.find("<h1>&lt;fin&gt;.off</h1>"), std::string::npos);
+  EXPECT_NE(html.find("edges of three or more triangles: 1"), std::string::npos);
+  EXPECT_NE(html.find("(1-2)"), std::string::npos);
+  EXPECT_NE(html.find("boundary loops: 1"), std::string::npos);
+  EXPECT_EQ(html.find("://"), std::string::npos);
+  std::size_t pictures = 0;
+  for (std::size_t at = 0; (at = html.find("<img src=\"data:", at)) != std::string::npos; ++at) {
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 4U);
+  EXPECT_EQ(run_command("info " + file + " --report " + page).exit_code, 2);  // is there already
+  EXPECT_EQ(run_command("info " + file + " --report -").exit_code, 2);
+}
+
+TEST_F(Info, WritesAPageOfPointsOnly) {
+  const std::string page = folder_ / "page.html";
+  const Ran ran =
+      run_command("info " + put("points.off", "OFF 1 0 0\n0 0 0\n") + " --report " + page);
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(file_content(page).find("Nothing to draw"), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "timbre/analysis/core/error.h"
 
@@ -67,7 +68,8 @@ class Flipper {
 
   void update_cotangents(std::int32_t face) {
     const std::array<double, 3> cotangent = cotangents_of(t_, at(3 * face));
-    std::copy(cotangent.begin(), cotangent.end(), cotangent_.begin() + 3 * face);
+    std::copy(cotangent.begin(), cotangent.end(),
+              cotangent_.begin() + static_cast<std::ptrdiff_t>(3) * face);
   }
 
   // Distance of the two corners off edge h, with both triangles laid into the plane.

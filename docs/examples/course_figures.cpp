@@ -62,8 +62,8 @@ class HalfRefiner {
   }
 
   void split(Triangle t) {
-    // Turned so that whole edges come last: none, or that from t[2] to t[0], or that and the one
-    // before. Two ends at x > 0 leave no edge whole, one leaves one, none all three.
+    // With one end at x > 0 the edge between the others stays whole: turned to be that from t[2] to
+    // t[0]. With two or three ends there all edges are split, with none none.
     while (mesh_.vertices(t[1], 0) <= 0.0 &&
            (mesh_.vertices(t[0], 0) > 0.0 || mesh_.vertices(t[2], 0) > 0.0)) {
       t = {t[1], t[2], t[0]};

@@ -2,6 +2,7 @@
 # Draws the pictures of README and docs anew, from creatures made on the spot: docs/pictures.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
+root=$PWD
 timbre=$PWD/build/release/cli/timbre
 pictures=$PWD/docs/pictures
 work=$(mktemp -d)
@@ -26,4 +27,32 @@ draw person1.ply --map map.txt --onto person2.ply -o "$pictures/match.png" --siz
 "$timbre" distance gorilla1.ply --vertices 0 -o d.npy -q
 draw gorilla1.ply -o "$pictures/distance.png" --size 300 --values d.npy --colours sequential \
   --lines 14 --markers 0
+# docs/operators.md: the gorilla coarse, its half refined by the example.
+cmake --install "$root/build/release" --prefix "$work/installed" >/dev/null
+cmake -S "$root/tests/consume" -B "$work/build" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$work/installed" \
+  -DEXAMPLE="$root/docs/examples/course_figures.cpp" >/dev/null
+cmake --build "$work/build" >/dev/null
+"$timbre" dataset make creatures -o "$work/coarse" --sets remeshed --species gorilla --poses 2 \
+  --resolution 1000 -q
+"$timbre" dataset make ellipsoid -o "$work/ellipsoid.ply" --resolution 160 -q
+"$timbre" dataset make rectangle -o "$work/plate.ply" --resolution 3000 -q
+mkdir "$work/gorilla" "$work/ellipsoid"
+"$work/build/consumer" "$work/coarse/remeshed/gorilla0.ply" "$work/gorilla"
+"$work/build/consumer" "$work/ellipsoid.ply" "$work/ellipsoid"
+for operator in graph robust; do
+  draw "$work/gorilla/uneven.ply" -o "$pictures/uneven_$operator.png" --size 220 --view front \
+    --operator $operator --eigenfunction 4 --lines 24
+done
+for elements in linear cubic; do
+  draw "$work/ellipsoid/$elements.ply" -o "$pictures/elements_$elements.png" --size 260x220 \
+    --view front --values "$work/ellipsoid/$elements.npy" --lines 14
+done
+for boundary in dirichlet neumann; do
+  draw "$work/plate.ply" -o "$pictures/boundary_$boundary.png" --size 240x128 --view front \
+    --boundary $boundary --eigenfunction 7 --lines 16
+done
+for letter in A B C D E; do
+  draw "$work/gorilla/$letter.ply" -o "$pictures/filter_$letter.png" --size 150 --view front
+done
 ls -l "$pictures"

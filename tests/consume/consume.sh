@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs timbre into an empty folder, builds the README's example against it, runs it.
+# Installs timbre into an empty folder, builds the examples of the docs against it, runs them.
 # consume.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -15,3 +15,11 @@ answer=$("$work/build/consumer" "$work/a.ply" "$work/a.ply")
 echo "$answer"
 grep -q "lambda_1 = " <<<"$answer"
 grep -q "vertex 0 -> " <<<"$answer"
+
+cmake -S "$source/tests/consume" -B "$work/figures" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$work/installed" -DEXAMPLE="$source/docs/examples/course_figures.cpp" >/dev/null
+cmake --build "$work/figures"
+"$work/figures/consumer" "$work/a.ply" "$work" | grep -q " vertices"
+for file in linear.npy cubic.ply uneven.ply E.ply; do
+  test -s "$work/$file"
+done

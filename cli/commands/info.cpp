@@ -120,8 +120,10 @@ void add_info(CLI::App& app, Context& context) {
   command.get_option("--up")->needs(report);
   add_read_options(command, context);
   add_threads_option(command, context);
+  command.get_option("--threads")->needs(report);
   add_common_options(command, context, false);
-  command.add_flag("--force", context.force, "let the page replace an existing file");
+  command.add_flag("--force", context.force, "let the page replace an existing file")
+      ->needs(report);
   command.footer(
       "Examples:\n  timbre info horse.ply --json | jq .genus\n"
       "  timbre info scan.ply --report scan.html");

@@ -24,10 +24,10 @@ struct ReadOptions {
 struct MeshFile {
   TriangleMesh mesh;
   std::vector<ReadWarning> warnings;  ///< sorted by code
-  std::string format;                 ///< what the content was: off, obj, ply, stl or freesurfer
+  std::string format;  ///< what the content was: off, obj, ply, stl, freesurfer or vtk
 };
 
-/// Reads OFF, OBJ, PLY, STL or FreeSurfer surfaces (triangles, old and new quads, .asc),
+/// Reads OFF, OBJ, PLY, STL, FreeSurfer surfaces (triangles, quads, .asc) or legacy VTK,
 /// told apart by content first and by ending second, `.gz` unpacked. Vertex i of the file is row i
 /// of `vertices`: none is merged, dropped or moved (STL, which has no vertex list, gets one vertex
 /// for each distinct corner position, numbered by first appearance). Polygons become triangles in

@@ -105,6 +105,23 @@ std::string freesurfer_bytes(const TriangleMesh& mesh) {
   return out;
 }
 
+// The layout before version 5.1, which every tool reads.
+std::string vtk_bytes(const TriangleMesh& mesh) {
+  std::string out =
+      "# vtk DataFile Version 3.0\ncreated by timbre\nBINARY\nDATASET POLYDATA\nPOINTS " +
+      std::to_string(mesh.vertices.rows()) + " double\n";
+  const std::span vertices(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()));
+  for (const double c : vertices) append_big_endian(out, c);
+  out += "\nPOLYGONS " + std::to_string(mesh.faces.rows()) + " " +
+         std::to_string(4 * mesh.faces.rows()) + "\n";
+  for (Eigen::Index i = 0; i < mesh.faces.rows(); ++i) {
+    append_big_endian(out, std::int32_t{3});
+    for (Eigen::Index k = 0; k < 3; ++k) append_big_endian(out, mesh.faces(i, k));
+  }
+  out += '\n';
+  return out;
+}
+
 std::string freesurfer_text(const TriangleMesh& mesh) {
   std::string out = "#!ascii created by timbre\n" + std::to_string(mesh.vertices.rows()) + " " +
                     std::to_string(mesh.faces.rows()) + "\n";
@@ -123,13 +140,15 @@ MeshFormat mesh_format_of(const std::string& path) {
   if (ending == ".off") return MeshFormat::off;
   if (ending == ".obj") return MeshFormat::obj;
   if (ending == ".ply") return MeshFormat::ply;
+  if (ending == ".vtk") return MeshFormat::vtk;
   if (ending == ".asc") return MeshFormat::freesurfer_text;
   for (const std::string_view name : kFreesurferEndings) {
     if (ending == name) return MeshFormat::freesurfer;
   }
-  throw Error(ErrorKind::bad_request, path, "output",
-              "the ending tells the format; .off, .obj, .ply, .asc and FreeSurfer's .white, .pial, "
-              ".inflated, .sphere, .orig, .smoothwm, .surf can be written");
+  throw Error(
+      ErrorKind::bad_request, path, "output",
+      "the ending tells the format; .off, .obj, .ply, .vtk, .asc and FreeSurfer's .white, .pial, "
+      ".inflated, .sphere, .orig, .smoothwm, .surf can be written");
 }
 
 std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format) {
@@ -138,6 +157,8 @@ std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format) {
       return off_bytes(mesh);
     case MeshFormat::obj:
       return obj_bytes(mesh);
+    case MeshFormat::vtk:
+      return vtk_bytes(mesh);
     case MeshFormat::freesurfer:
       return freesurfer_bytes(mesh);
     case MeshFormat::freesurfer_text:

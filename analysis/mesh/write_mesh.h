@@ -7,16 +7,16 @@
 
 namespace timbre {
 
-enum class MeshFormat : std::uint8_t { off, obj, ply, freesurfer, freesurfer_text };
+enum class MeshFormat : std::uint8_t { off, obj, ply, freesurfer, freesurfer_text, vtk };
 
 /// The bytes of a file: OFF, OBJ and FreeSurfer's .asc as text with shortest round-trip
-/// numbers, PLY binary little-endian with double coordinates. Reading them back gives
+/// numbers, PLY and VTK (3.0, POLYDATA) binary with double coordinates. Reading them back gives
 /// the same mesh, bit for bit. FreeSurfer's binary triangles have float coordinates: they
 /// are rounded.
 /// @throws Error  bad_request if a coordinate is beyond the range of the format's numbers
 [[nodiscard]] std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format);
 
-/// The format that the ending of `path` asks for: .off, .obj, .ply, .asc, or one of the
+/// The format that the ending of `path` asks for: .off, .obj, .ply, .vtk, .asc, or one of the
 /// names of FreeSurfer's surfaces: .white .pial .inflated .sphere .orig .smoothwm .surf.
 /// @throws Error  bad_request for another ending
 [[nodiscard]] MeshFormat mesh_format_of(const std::string& path);

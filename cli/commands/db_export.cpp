@@ -50,7 +50,8 @@ void add_db_export(CLI::App& db, Context& context) {
                    "the eigenvalues, at the mesh's own scale, as .npy, .npz or text");
   add_common_options(command, context, true);
   command.footer(
-      "The mesh comes out bit for bit as it went in, as .off, .obj, .ply or .asc. FreeSurfer's\n"
+      "The mesh comes out bit for bit as it went in, as .off, .obj, .ply, .vtk or .asc. "
+      "FreeSurfer's\n"
       ".white, .pial, .inflated, .sphere, .orig, .smoothwm and .surf round to float.\n"
       "Example:\n  timbre db export shapes.timbre cat3 -o cat3.ply");
   command.callback([args, &context] { run(*args, context); });

@@ -183,7 +183,9 @@ void add_info(CLI::App& app, Context& context) {
   auto mesh = std::make_shared<std::string>();
   CLI::App& command =
       *app.add_subcommand("info", "What a mesh is, what is odd about it, and what that means");
-  command.add_option("MESH", *mesh, "OFF, OBJ, PLY, STL or FreeSurfer file, also .gz; - for stdin")
+  command
+      .add_option("MESH", *mesh,
+                  "OFF, OBJ, PLY, STL, FreeSurfer or VTK file, also .gz; - for stdin")
       ->required();
   add_read_options(command, context);
   add_common_options(command, context, false);

@@ -107,6 +107,7 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   const std::string_view text = without_mark(head);
   if (is_ply(text)) return FileFormat::ply;
   if (text.starts_with("#!ascii")) return FileFormat::freesurfer_text;
+  if (text.starts_with("# vtk DataFile Version")) return FileFormat::vtk;
 
   Cursor cursor(text);
   cursor.expect_text({.hash_comments = true});
@@ -131,7 +132,8 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   if (is_obj || ending == ".obj") return FileFormat::obj;
   if (ending == ".asc") return FileFormat::freesurfer_text;
   if (ending == ".stl") require_stl_size(head, size);
-  refuse("line 1", "no known format; OFF, OBJ, PLY, STL and FreeSurfer are read, also with .gz");
+  refuse("line 1",
+         "no known format; OFF, OBJ, PLY, STL, FreeSurfer and VTK are read, also with .gz");
 }
 
 std::string_view without_mark(std::string_view text) {

@@ -62,6 +62,7 @@ enum class FileFormat : std::uint8_t {
   stl_binary,
   freesurfer_text,
   freesurfer_binary,
+  vtk,
 };
 
 /// Tells the format by content first and by the name's ending second.
@@ -86,5 +87,6 @@ enum class FileFormat : std::uint8_t {
 [[nodiscard]] PolygonMesh read_stl_binary(Cursor cursor, bool soup);
 [[nodiscard]] PolygonMesh read_freesurfer_text(Cursor cursor);
 [[nodiscard]] PolygonMesh read_freesurfer_binary(Cursor cursor);
+[[nodiscard]] PolygonMesh read_vtk(Cursor cursor);
 
 }  // namespace timbre::detail

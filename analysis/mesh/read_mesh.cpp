@@ -33,6 +33,12 @@ PolygonMesh read_polygons(FileFormat format, std::string_view bytes, const ReadO
       return detail::read_obj(cursor);
     case FileFormat::ply:
       return detail::read_ply(cursor);
+    case FileFormat::vtk:
+      return detail::read_vtk(cursor);
+    case FileFormat::freesurfer_text:
+      return detail::read_freesurfer_text(cursor);
+    case FileFormat::freesurfer_binary:
+      return detail::read_freesurfer_binary(cursor);
     default:
       return detail::read_stl_text(cursor, options.soup);
   }
@@ -46,6 +52,11 @@ const char* name_of(FileFormat format) {
       return "obj";
     case FileFormat::ply:
       return "ply";
+    case FileFormat::vtk:
+      return "vtk";
+    case FileFormat::freesurfer_text:
+    case FileFormat::freesurfer_binary:
+      return "freesurfer";
     default:
       return "stl";
   }

@@ -24,14 +24,14 @@ struct ReadOptions {
 struct MeshFile {
   TriangleMesh mesh;
   std::vector<ReadWarning> warnings;  ///< sorted by code
-  std::string format;                 ///< what the content was: off, obj, ply or stl
+  std::string format;  ///< what the content was: off, obj, ply, stl, freesurfer or vtk
 };
 
-/// Reads OFF, OBJ, PLY or STL, told apart by content first and by ending second,
-/// `.gz` unpacked. Vertex i of the file is row i of `vertices`: none is merged,
-/// dropped or moved (STL, which has no vertex list, gets one vertex for each
-/// distinct corner position, numbered by first appearance). Polygons become
-/// triangles in place. `-` reads standard input.
+/// Reads OFF, OBJ, PLY, STL, FreeSurfer surfaces (triangles, quads, .asc) or legacy VTK,
+/// told apart by content first and by ending second, `.gz` unpacked. Vertex i of the file is row i
+/// of `vertices`: none is merged, dropped or moved (STL, which has no vertex list, gets one vertex
+/// for each distinct corner position, numbered by first appearance). Polygons become triangles in
+/// place. `-` reads standard input.
 ///
 /// Thread-safe; shares no state, uses no locale.
 /// @throws Error  bad_input with file, place and cause; io when the system refuses

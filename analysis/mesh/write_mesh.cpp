@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <span>
 #include <string_view>
 
 #include "timbre/analysis/core/error.h"
@@ -15,6 +17,10 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY bodies are copied as they lie");
 
+// FreeSurfer's surfaces have no ending but their name: lh.white.
+constexpr std::array<std::string_view, 7> kFreesurferEndings = {
+    ".white", ".pial", ".inflated", ".sphere", ".orig", ".smoothwm", ".surf"};
+
 template <typename Number>
 void append(std::string& out, Number value) {
   std::array<char, 32> buffer{};
@@ -22,16 +28,17 @@ void append(std::string& out, Number value) {
   out.append(buffer.data(), result.ptr);
 }
 
-// `a b c` and a line end for each row, each number raised by `offset`.
+// `a b c` for each row, each number raised by `offset`.
 template <typename Table>
 void append_rows(std::string& out, const Table& table, std::string_view before,
-                 typename Table::Scalar offset) {
+                 typename Table::Scalar offset, std::string_view after = {}) {
   for (Eigen::Index i = 0; i < table.rows(); ++i) {
     out += before;
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (k > 0) out += ' ';
       append(out, offset == 0 ? table(i, k) : table(i, k) + offset);
     }
+    out += after;
     out += '\n';
   }
 }
@@ -71,7 +78,61 @@ std::string ply_bytes(const TriangleMesh& mesh) {
   return out;
 }
 
-MeshFormat format_of(const std::string& path) {
+// The value's bytes, most significant first.
+template <typename Number>
+void append_big_endian(std::string& out, Number value) {
+  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+  out.append(raw.rbegin(), raw.rend());
+}
+
+float to_float(double value) {
+  const auto rounded = static_cast<float>(value);
+  if (std::isfinite(rounded)) return rounded;
+  throw Error(ErrorKind::bad_request, "", "output",
+              "a coordinate is beyond the range of a float; .ply keeps it");
+}
+
+std::string freesurfer_bytes(const TriangleMesh& mesh) {
+  std::string out =
+      "\xff\xff\xfe"
+      "created by timbre\n\n";
+  append_big_endian(out, static_cast<std::int32_t>(mesh.vertices.rows()));
+  append_big_endian(out, static_cast<std::int32_t>(mesh.faces.rows()));
+  const std::span vertices(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()));
+  const std::span faces(mesh.faces.data(), static_cast<std::size_t>(mesh.faces.size()));
+  for (const double c : vertices) append_big_endian(out, to_float(c));
+  for (const std::int32_t v : faces) append_big_endian(out, v);
+  return out;
+}
+
+// The layout before version 5.1, which every tool reads.
+std::string vtk_bytes(const TriangleMesh& mesh) {
+  std::string out =
+      "# vtk DataFile Version 3.0\ncreated by timbre\nBINARY\nDATASET POLYDATA\nPOINTS " +
+      std::to_string(mesh.vertices.rows()) + " double\n";
+  const std::span vertices(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()));
+  for (const double c : vertices) append_big_endian(out, c);
+  out += "\nPOLYGONS " + std::to_string(mesh.faces.rows()) + " " +
+         std::to_string(4 * mesh.faces.rows()) + "\n";
+  for (Eigen::Index i = 0; i < mesh.faces.rows(); ++i) {
+    append_big_endian(out, std::int32_t{3});
+    for (Eigen::Index k = 0; k < 3; ++k) append_big_endian(out, mesh.faces(i, k));
+  }
+  out += '\n';
+  return out;
+}
+
+std::string freesurfer_text(const TriangleMesh& mesh) {
+  std::string out = "#!ascii created by timbre\n" + std::to_string(mesh.vertices.rows()) + " " +
+                    std::to_string(mesh.faces.rows()) + "\n";
+  append_rows(out, mesh.vertices, "", 0.0, " 0");
+  append_rows(out, mesh.faces, "", 0, " 0");
+  return out;
+}
+
+}  // namespace
+
+MeshFormat mesh_format_of(const std::string& path) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   for (char& c : ending) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -79,11 +140,16 @@ MeshFormat format_of(const std::string& path) {
   if (ending == ".off") return MeshFormat::off;
   if (ending == ".obj") return MeshFormat::obj;
   if (ending == ".ply") return MeshFormat::ply;
-  throw Error(ErrorKind::bad_request, path, "output",
-              "the ending tells the format; .off, .obj and .ply can be written");
+  if (ending == ".vtk") return MeshFormat::vtk;
+  if (ending == ".asc") return MeshFormat::freesurfer_text;
+  for (const std::string_view name : kFreesurferEndings) {
+    if (ending == name) return MeshFormat::freesurfer;
+  }
+  throw Error(
+      ErrorKind::bad_request, path, "output",
+      "the ending tells the format; .off, .obj, .ply, .vtk, .asc and FreeSurfer's .white, .pial, "
+      ".inflated, .sphere, .orig, .smoothwm, .surf can be written");
 }
-
-}  // namespace
 
 std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format) {
   switch (format) {
@@ -91,13 +157,19 @@ std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format) {
       return off_bytes(mesh);
     case MeshFormat::obj:
       return obj_bytes(mesh);
+    case MeshFormat::vtk:
+      return vtk_bytes(mesh);
+    case MeshFormat::freesurfer:
+      return freesurfer_bytes(mesh);
+    case MeshFormat::freesurfer_text:
+      return freesurfer_text(mesh);
     default:
       return ply_bytes(mesh);
   }
 }
 
 void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite) {
-  write_file(path, to_mesh_bytes(mesh, format_of(path)), overwrite);
+  write_file(path, to_mesh_bytes(mesh, mesh_format_of(path)), overwrite);
 }
 
 }  // namespace timbre

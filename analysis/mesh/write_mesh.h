@@ -7,14 +7,21 @@
 
 namespace timbre {
 
-enum class MeshFormat : std::uint8_t { off, obj, ply };
+enum class MeshFormat : std::uint8_t { off, obj, ply, freesurfer, freesurfer_text, vtk };
 
-/// The bytes of a file: OFF and OBJ as text with shortest round-trip numbers,
-/// PLY binary little-endian with double coordinates. Reading them back gives
-/// the same mesh, bit for bit.
+/// The bytes of a file: OFF, OBJ and FreeSurfer's .asc as text with shortest round-trip
+/// numbers, PLY and VTK (3.0, POLYDATA) binary with double coordinates. Reading them back gives
+/// the same mesh, bit for bit. FreeSurfer's binary triangles have float coordinates: they
+/// are rounded.
+/// @throws Error  bad_request if a coordinate is beyond the range of the format's numbers
 [[nodiscard]] std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format);
 
-/// Writes a mesh; the ending of `path` chooses the format. Whole or not at all.
+/// The format that the ending of `path` asks for: .off, .obj, .ply, .vtk, .asc, or one of the
+/// names of FreeSurfer's surfaces: .white .pial .inflated .sphere .orig .smoothwm .surf.
+/// @throws Error  bad_request for another ending
+[[nodiscard]] MeshFormat mesh_format_of(const std::string& path);
+
+/// Writes a mesh in the format of `mesh_format_of`. Whole or not at all.
 /// @throws Error  bad_request for an unknown ending or, without `overwrite`, an
 ///                existing file; io when the system refuses
 void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite = false);

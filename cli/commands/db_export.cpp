@@ -1,7 +1,6 @@
 #include <memory>
 #include <string>
 
-#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/mesh/write_mesh.h"
 #include "timbre/cli/array_output.h"
 #include "timbre/cli/commands/db.h"
@@ -12,10 +11,7 @@ namespace timbre::cli {
 namespace {
 
 MeshFormat format_of(const std::string& path) {
-  if (path.ends_with(".off")) return MeshFormat::off;
-  if (path.ends_with(".obj")) return MeshFormat::obj;
-  if (path == "-" || path.ends_with(".ply")) return MeshFormat::ply;
-  throw Error(ErrorKind::bad_request, path, "output", "ends neither in .off, .obj nor .ply");
+  return path == "-" ? MeshFormat::ply : mesh_format_of(path);
 }
 
 struct Arguments {
@@ -54,7 +50,9 @@ void add_db_export(CLI::App& db, Context& context) {
                    "the eigenvalues, at the mesh's own scale, as .npy, .npz or text");
   add_common_options(command, context, true);
   command.footer(
-      "The mesh comes out bit for bit as it went in, as .off, .obj or .ply.\n"
+      "The mesh comes out bit for bit as it went in, as .off, .obj, .ply, .vtk or .asc. "
+      "FreeSurfer's\n"
+      ".white, .pial, .inflated, .sphere, .orig, .smoothwm and .surf round to float.\n"
       "Example:\n  timbre db export shapes.timbre cat3 -o cat3.ply");
   command.callback([args, &context] { run(*args, context); });
 }

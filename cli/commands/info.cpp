@@ -113,7 +113,10 @@ void add_info(CLI::App& app, Context& context) {
   auto page = std::make_shared<PageRequest>();
   CLI::App& command =
       *app.add_subcommand("info", "What a mesh is, what is odd about it, and what that means");
-  command.add_option("MESH", *mesh, "OFF, OBJ, PLY or STL file, also .gz; - for stdin")->required();
+  command
+      .add_option("MESH", *mesh,
+                  "OFF, OBJ, PLY, STL, FreeSurfer or VTK file, also .gz; - for stdin")
+      ->required();
   CLI::Option* const report = command.add_option(
       "--report", page->output, "also write a page with pictures on which each defect is marked");
   add_up_option(command, page->pictures.up);

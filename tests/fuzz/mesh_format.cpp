@@ -107,7 +107,8 @@ bool same(const TriangleMesh& a, const TriangleMesh& b) {
 }
 
 void require_round_trip(const TriangleMesh& mesh) {
-  for (const MeshFormat format : {MeshFormat::off, MeshFormat::obj, MeshFormat::ply}) {
+  for (const MeshFormat format : {MeshFormat::off, MeshFormat::obj, MeshFormat::ply,
+                                  MeshFormat::freesurfer_text, MeshFormat::vtk}) {
     if (mesh.vertices.rows() == 0 && format == MeshFormat::obj) continue;  // cannot say so
     const std::string bytes = to_mesh_bytes(mesh, format);
     require(same(read_mesh_bytes(bytes, "written").mesh, mesh), "what is written is read back");

@@ -47,4 +47,20 @@ inline void expect_refused(const std::vector<Refused>& cases, const std::string&
   for (const Refused& c : cases) EXPECT_EQ(refusal(c.bytes, name), name + ": " + c.line) << c.bytes;
 }
 
+/// Of a file that ends too soon an error is left, or the whole mesh.
+inline void expect_cuts_are_seen(const std::string& bytes, const std::string& name) {
+  const MeshFile whole = read_mesh_bytes(bytes, name);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    try {
+      const MeshFile cut = read_mesh_bytes(bytes.substr(0, size), name);
+      ASSERT_EQ(cut.mesh.vertices.rows(), whole.mesh.vertices.rows()) << size;
+      ASSERT_EQ(cut.mesh.faces.rows(), whole.mesh.faces.rows()) << size;
+      EXPECT_EQ(cut.mesh.vertices, whole.mesh.vertices) << size;
+      EXPECT_EQ(cut.mesh.faces, whole.mesh.faces) << size;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input) << size;
+    }
+  }
+}
+
 }  // namespace timbre

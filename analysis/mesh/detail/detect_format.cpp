@@ -71,6 +71,12 @@ void refuse_known_mistakes(std::string_view first_word, std::string_view second_
   if (is_gzip(first_word)) refuse("byte 0", "gzip data; it is unpacked when the name ends in .gz");
 }
 
+// One of the three magics; the two marks of UTF-16 have other second bytes.
+bool is_freesurfer(std::string_view head) {
+  return head.starts_with("\xff\xff\xfd") || head.starts_with("\xff\xff\xfe") ||
+         head.starts_with("\xff\xff\xff");
+}
+
 bool is_ply(std::string_view head) {
   return head.starts_with("ply") && (head.size() == 3 || head.find_first_of(" \t\r\n") == 3);
 }
@@ -88,9 +94,11 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   if (size == 0) refuse("byte 0", "the file is empty");
   // Before all words, for an STL may begin with any. No text fits by accident: the count
   // it spells would be above 150 million.
-  if (fits_stl(head, size) && (stl_facets(head) > 0 || size == kStlHeader)) {
-    return FileFormat::stl_binary;
-  }
+  const bool stl = fits_stl(head, size);
+  if (stl && stl_facets(head) > 0) return FileFormat::stl_binary;
+  // A surface cut after 84 bytes looks like an STL of no facets.
+  if (is_freesurfer(head)) return FileFormat::freesurfer_binary;
+  if (stl && size == kStlHeader) return FileFormat::stl_binary;
   if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff")) {
     refuse("byte 0", "UTF-16 text; save it as UTF-8");
   }
@@ -98,6 +106,8 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   const std::string ending = lower(name.substr(std::min(name.rfind('.'), name.size())));
   const std::string_view text = without_mark(head);
   if (is_ply(text)) return FileFormat::ply;
+  if (text.starts_with("#!ascii")) return FileFormat::freesurfer_text;
+  if (text.starts_with("# vtk DataFile Version")) return FileFormat::vtk;
 
   Cursor cursor(text);
   cursor.expect_text({.hash_comments = true});
@@ -120,8 +130,10 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   const bool is_obj =
       std::find(kObjKeywords.begin(), kObjKeywords.end(), word) != kObjKeywords.end();
   if (is_obj || ending == ".obj") return FileFormat::obj;
+  if (ending == ".asc") return FileFormat::freesurfer_text;
   if (ending == ".stl") require_stl_size(head, size);
-  refuse("line 1", "no known format; OFF, OBJ, PLY and STL are read, also with .gz");
+  refuse("line 1",
+         "no known format; OFF, OBJ, PLY, STL, FreeSurfer and VTK are read, also with .gz");
 }
 
 std::string_view without_mark(std::string_view text) {

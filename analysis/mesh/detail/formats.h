@@ -54,7 +54,16 @@ class PolygonMesh {
   std::vector<std::size_t> ends_;  // where each ends in `corners`; empty while all are triangles
 };
 
-enum class FileFormat : std::uint8_t { off, obj, ply, stl_text, stl_binary };
+enum class FileFormat : std::uint8_t {
+  off,
+  obj,
+  ply,
+  stl_text,
+  stl_binary,
+  freesurfer_text,
+  freesurfer_binary,
+  vtk,
+};
 
 /// Tells the format by content first and by the name's ending second.
 ///
@@ -76,5 +85,8 @@ enum class FileFormat : std::uint8_t { off, obj, ply, stl_text, stl_binary };
 /// @param soup  keep the corners of all facets apart
 [[nodiscard]] PolygonMesh read_stl_text(Cursor cursor, bool soup);
 [[nodiscard]] PolygonMesh read_stl_binary(Cursor cursor, bool soup);
+[[nodiscard]] PolygonMesh read_freesurfer_text(Cursor cursor);
+[[nodiscard]] PolygonMesh read_freesurfer_binary(Cursor cursor);
+[[nodiscard]] PolygonMesh read_vtk(Cursor cursor);
 
 }  // namespace timbre::detail

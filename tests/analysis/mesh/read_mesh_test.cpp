@@ -84,7 +84,7 @@ TEST(ReadMesh, SkipsAByteOrderMark) {
 
 TEST(ReadMesh, SaysWhatAFileSeemsToBe) {
   const std::string unknown =
-      "line 1: no known format; OFF, OBJ, PLY and STL are read, also with .gz";
+      "line 1: no known format; OFF, OBJ, PLY, STL, FreeSurfer and VTK are read, also with .gz";
   expect_refused(
       {
           {"", "byte 0: the file is empty"},

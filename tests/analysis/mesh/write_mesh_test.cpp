@@ -44,7 +44,8 @@ TEST_P(EveryFormat, ReadsBackBitForBit) {
   EXPECT_EQ(to_mesh_bytes(back, GetParam()), bytes);
 }
 INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat,
-                         testing::Values(MeshFormat::off, MeshFormat::obj, MeshFormat::ply));
+                         testing::Values(MeshFormat::off, MeshFormat::obj, MeshFormat::ply,
+                                         MeshFormat::freesurfer_text, MeshFormat::vtk));
 
 TEST(ToMeshBytes, WritesShortNumbers) {
   EXPECT_EQ(to_mesh_bytes(make_mesh({{0, 0.1, 1e300}}, {{0, 0, 0}}), MeshFormat::off),
@@ -55,7 +56,8 @@ TEST(ToMeshBytes, WritesShortNumbers) {
 
 TEST(WriteMesh, ChoosesTheFormatByTheEnding) {
   const TemporaryFolder folder;
-  for (const std::string name : {"a.off", "a.OBJ", "a.ply"}) {
+  for (const std::string name :
+       {"a.off", "a.OBJ", "a.ply", "a.asc", "a.vtk", "lh.white", "rh.PIAL", "inner.surf"}) {
     write_mesh(tetrahedron(), folder / name);
     EXPECT_EQ(read_mesh(folder / name).mesh.faces, tetrahedron().faces);
   }
@@ -64,9 +66,11 @@ TEST(WriteMesh, ChoosesTheFormatByTheEnding) {
     FAIL() << "no exception";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_request);
-    EXPECT_EQ(error.what(), folder / "a.stl" +
-                                ": output: the ending tells the format; .off, .obj "
-                                "and .ply can be written");
+    EXPECT_EQ(error.what(),
+              folder / "a.stl" +
+                  ": output: the ending tells the format; .off, .obj, .ply, .vtk, .asc and "
+                  "FreeSurfer's .white, .pial, .inflated, .sphere, .orig, .smoothwm, "
+                  ".surf can be written");
   }
 }
 

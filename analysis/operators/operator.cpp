@@ -39,24 +39,26 @@ struct Matrices {
   std::int64_t flips = 0;
 };
 
-Matrices with_diagonal_mass(SparseMatrix stiffness, VectorXd diagonal) {
-  SparseMatrix mass = detail::symmetric_matrix({}, diagonal);
-  return {std::move(stiffness), std::move(mass), std::move(diagonal), 0};
+// Sparse matrices are swapped: Eigen's copy where they are moved.
+Matrices with_diagonal_mass(SparseMatrix&& stiffness, const VectorXd& diagonal) {
+  Matrices found{{}, detail::symmetric_matrix({}, diagonal), diagonal, 0};
+  found.stiffness.swap(stiffness);
+  return found;
 }
 
 // Linear elements on triangles that may be others than the mesh's.
 // @param share  of each triangle that counts
 Matrices linear_elements(const Surface& surface, std::vector<MatrixPair> weights,
                          const std::vector<MetricFace>& faces, double share, MassKind mass) {
-  SparseMatrix stiffness = detail::laplacian_of_edges(std::move(weights), surface.vertices());
-  VectorXd areas = share * detail::barycentric_areas(surface, faces);
+  const VectorXd areas = share * detail::barycentric_areas(surface, faces);
   if (mass == MassKind::lumped) {
-    return with_diagonal_mass(std::move(stiffness), std::move(areas));
+    return with_diagonal_mass(detail::laplacian_of_edges(std::move(weights), surface.vertices()),
+                              areas);
   }
   std::vector<MatrixPair> pairs = detail::galerkin_pairs(surface, faces);
   for (MatrixPair& pair : pairs) pair.value *= share;
-  SparseMatrix galerkin = detail::symmetric_matrix(pairs, 0.5 * areas);
-  return {std::move(stiffness), std::move(galerkin), std::move(areas), 0};
+  return {detail::laplacian_of_edges(std::move(weights), surface.vertices()),
+          detail::symmetric_matrix(pairs, 0.5 * areas), areas, 0};
 }
 
 Matrices cotan_matrices(const Surface& surface, MassKind mass) {
@@ -102,7 +104,7 @@ Matrices graph_matrices(const Input& input, MassKind mass) {
   SparseMatrix stiffness = detail::laplacian_of_edges(unit_edges(input), input.surface.vertices());
   VectorXd diagonal =
       mass == MassKind::degree ? VectorXd(stiffness.diagonal()) : ones_on_surface(input.surface);
-  return with_diagonal_mass(std::move(stiffness), std::move(diagonal));
+  return with_diagonal_mass(std::move(stiffness), diagonal);
 }
 
 // The mean of the vertex areas of each component, at its vertices.
@@ -135,7 +137,7 @@ Matrices uniform_matrices(const Surface& surface, bool averaged) {
     }
   }
   return with_diagonal_mass(detail::laplacian_of_edges(std::move(weights), surface.vertices()),
-                            std::move(mean));
+                            mean);
 }
 
 Matrices polynomial_matrices(const Input& input, const LagrangeNodes& nodes) {
@@ -280,8 +282,8 @@ Operator build(const Input& input, const OperatorOptions& options) {
     nodes = number_nodes(input.faces, op.vertices, op.kind == OperatorKind::p2 ? 2 : 3);
   }
   Matrices found = matrices_of(input, op.kind, op.mass_kind, nodes);
-  op.stiffness = std::move(found.stiffness);
-  op.mass = std::move(found.mass);
+  op.stiffness.swap(found.stiffness);
+  op.mass.swap(found.mass);
   op.lumped_mass = std::move(found.lumped_mass);
   op.flips = found.flips;
   op.component = component_of_nodes(input.surface, nodes);

@@ -137,7 +137,7 @@ class AngularOrder {
 
   // Sorts the sides on one edge as one meets them turning about it, and tells the direction.
   // @return true if the edge runs from its larger vertex to its smaller
-  bool sort(std::span<TriangleSide> sides) const {
+  [[nodiscard]] bool sort(std::span<TriangleSide> sides) const {
     const bool reversed = rank_[at(sides[0].low)] > rank_[at(sides[0].high)];
     const std::int32_t from = reversed ? sides[0].high : sides[0].low;
     const std::int32_t to = reversed ? sides[0].low : sides[0].high;

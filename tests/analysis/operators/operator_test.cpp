@@ -210,8 +210,7 @@ TEST(ComputeOperator, RefusesAMeshWithoutArea) {
   EXPECT_EQ(message(mesh),
             "faces: none with three different corners; a Laplacian needs at least one");
   mesh.faces.resize(0, 3);
-  EXPECT_EQ(message(mesh),
-            "faces: there are none, only points; a Laplacian needs a surface");
+  EXPECT_EQ(message(mesh), "faces: there are none, only points; a Laplacian needs a surface");
 }
 
 TEST(ComputeOperator, RefusesAreasBeyondADouble) {

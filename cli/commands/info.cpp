@@ -89,10 +89,6 @@ std::string to_text(const std::string& path, const MeshFile& file, const Diagnos
   return text;
 }
 
-}  // namespace
-
-namespace {
-
 // What `--report` needs beside the mesh.
 struct PageRequest {
   std::string output;
@@ -100,10 +96,10 @@ struct PageRequest {
 };
 
 void write_page(const Context& context, const std::string& path, const MeshFile& file,
-                PageRequest request) {
+                const Diagnosis& found, PageRequest request) {
   request.pictures.threads = context.threads;
   request.pictures.progress = context.progress();
-  context.write_result(request.output, make_mesh_page(path, file, request.pictures));
+  context.write_result(request.output, make_mesh_page(path, file, found, request.pictures));
 }
 
 }  // namespace
@@ -138,8 +134,10 @@ void add_info(CLI::App& app, Context& context) {
     }
     if (!page->output.empty()) require_writable(page->output, context.force);
     const MeshFile file = read_mesh_file(context, *mesh);
-    const Diagnosis found = diagnose(file.mesh);
-    if (!page->output.empty()) write_page(context, *mesh, file, *page);
+    constexpr std::size_t kMarked = 4000;  // of each kind; more would hide the shape
+    const Diagnosis found =
+        page->output.empty() ? diagnose(file.mesh) : diagnose(file.mesh, kMarked);
+    if (!page->output.empty()) write_page(context, *mesh, file, found, *page);
     context.answer(to_json(*mesh, file, found), to_text(*mesh, file, found));
   });
 }

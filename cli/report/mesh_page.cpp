@@ -19,8 +19,7 @@ namespace {
 using Eigen::Index;
 using Eigen::RowVector3d;
 
-constexpr std::size_t kMostMarks = 4000;  // of each kind; more hide the shape
-constexpr int kSide = 560;                // pixels
+constexpr int kSide = 560;  // pixels
 
 // Unlike for any colour vision (Okabe and Ito 2008), in the order of `Defect`.
 Colour colour_of(Defect defect) {
@@ -34,28 +33,26 @@ Colour colour_of(Defect defect) {
 // A mesh with marks on it: points in no triangle, with a ball each.
 class MarkedMesh {
  public:
-  explicit MarkedMesh(const TriangleMesh& mesh) : mesh_(mesh) {
-    const RowVector3d extent =
-        mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff();
-    spacing_ = 0.01 * extent.maxCoeff();
-  }
+  // Edges are dotted; long ones have more dots.
+  MarkedMesh(const TriangleMesh& mesh, double spacing) : mesh_(mesh), spacing_(spacing) {}
 
   void mark_edges(Defect defect, const std::vector<std::array<std::int32_t, 2>>& edges) {
-    for (const auto& [from, to] : some_of(edges)) {
+    for (const auto& [from, to] : edges) {
       const RowVector3d a = mesh_.vertices.row(from);
       const RowVector3d b = mesh_.vertices.row(to);
-      constexpr int kMost = 40;
-      const int steps = std::clamp(static_cast<int>((b - a).norm() / spacing_), 1, kMost);
+      constexpr double kMost = 40.0;
+      const double dots = spacing_ > 0.0 ? (b - a).stableNorm() / spacing_ : 1.0;
+      const int steps = static_cast<int>(std::clamp(dots, 1.0, kMost));
       for (int i = 0; i < steps; ++i) add(defect, a + (b - a) * ((i + 0.5) / steps), kSmall);
     }
   }
   void mark_faces(Defect defect, const std::vector<std::int32_t>& faces) {
-    for (const std::int32_t face : some_of(faces)) {
+    for (const std::int32_t face : faces) {
       add(defect, mesh_.vertices(mesh_.faces.row(face), Eigen::all).colwise().mean(), kLarge);
     }
   }
   void mark_vertices(Defect defect, const std::vector<std::int32_t>& vertices) {
-    for (const std::int32_t v : some_of(vertices)) add(defect, mesh_.vertices.row(v), kMiddle);
+    for (const std::int32_t v : vertices) add(defect, mesh_.vertices.row(v), kMiddle);
   }
 
   [[nodiscard]] TriangleMesh mesh() const {
@@ -74,15 +71,6 @@ class MarkedMesh {
   static constexpr float kMiddle = 0.014F;
   static constexpr float kLarge = 0.018F;
 
-  // Evenly, where there are too many.
-  template <typename Place>
-  static std::vector<Place> some_of(const std::vector<Place>& places) {
-    const std::size_t step = places.size() / kMostMarks + 1;
-    std::vector<Place> some;
-    for (std::size_t i = 0; i < places.size(); i += step) some.push_back(places[i]);
-    return some;
-  }
-
   void add(Defect defect, const RowVector3d& point, float radius) {
     const auto vertex = mesh_.vertices.rows() + static_cast<Index>(points_.size());
     markers_.push_back({static_cast<std::int32_t>(vertex), colour_of(defect), radius});
@@ -90,13 +78,13 @@ class MarkedMesh {
   }
 
   const TriangleMesh& mesh_;
-  double spacing_ = 0.0;
+  double spacing_;
   std::vector<RowVector3d> points_;
   std::vector<Marker> markers_;
 };
 
 MarkedMesh mark(const TriangleMesh& mesh, const Diagnosis& found) {
-  MarkedMesh marked(mesh);
+  MarkedMesh marked(mesh, found.mean_edge / 8.0);
   marked.mark_edges(Defect::boundary, found.first_boundary_edges);
   marked.mark_edges(Defect::flipped_edge, found.first_flipped_edges);
   marked.mark_edges(Defect::nonmanifold_edge, found.first_nonmanifold_edges);
@@ -172,11 +160,8 @@ std::string oddities(const MeshFile& file, const Diagnosis& found) {
 
 }  // namespace
 
-std::string make_mesh_page(const std::string& name, const MeshFile& file,
+std::string make_mesh_page(const std::string& name, const MeshFile& file, const Diagnosis& found,
                            const PictureOptions& options) {
-  const Diagnosis found =
-      diagnose(file.mesh, static_cast<std::size_t>(3 * file.mesh.faces.rows()) +
-                              static_cast<std::size_t>(file.mesh.vertices.rows()));
   PictureMaker maker(options);
   const std::string title = std::filesystem::path(name).filename().string();
   const std::string content =

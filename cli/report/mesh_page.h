@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "timbre/analysis/mesh/diagnosis.h"
 #include "timbre/analysis/mesh/read_mesh.h"
 #include "timbre/cli/report/pictures.h"
 
@@ -10,8 +11,9 @@ namespace timbre::cli {
 /// One page about a mesh: what it is, what is odd about it and what that means, with pictures on
 /// which each defect is marked. It needs no other file and no network. The same inputs give the
 /// same bytes.
-/// @param name  what to call the mesh
+/// @param name   what to call the mesh
+/// @param found  its diagnosis; what its lists hold is marked
 [[nodiscard]] std::string make_mesh_page(const std::string& name, const MeshFile& file,
-                                         const PictureOptions& options);
+                                         const Diagnosis& found, const PictureOptions& options);
 
 }  // namespace timbre::cli

@@ -112,7 +112,7 @@ TEST(UnpackGzip, JoinsMembers) {
   EXPECT_EQ(unpack_gzip(gzip("ab") + gzip("") + gzip(large), kLimit), "ab" + large);
 }
 
-// Space once made and filled for each of them took minutes here.
+// Space made and filled anew for each of them took long here.
 TEST(UnpackGzip, TakesAsManyMembersAsThereAre) {
   std::string packed;
   const std::string member = gzip("ab");

@@ -15,12 +15,13 @@
 #include <vector>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/huge_pages.h"
 
 namespace timbre {
 namespace {
 
 constexpr std::size_t kHead = 4096;
-constexpr std::size_t kChunk = std::size_t{1} << 20;
+constexpr std::size_t kChunk = std::size_t{1} << 18;
 constexpr std::size_t kPiece = std::size_t{1} << 16;  // of what is unpacked
 constexpr std::uint64_t kBombSize = std::uint64_t{64} << 20;
 constexpr std::uint64_t kBombRatio = 200;
@@ -105,6 +106,7 @@ std::string read_regular_file(const std::string& path, const ByteSourceOptions& 
   if (options.inspect) options.inspect(bytes, std::max<std::uint64_t>(size, bytes.size()));
   if (!more) return bytes;
   bytes.reserve(static_cast<std::size_t>(size) + kChunk);
+  prefer_huge_pages(bytes.data() + bytes.size(), bytes.capacity() - bytes.size());
   append_all(bytes, file.number(), path, options);
   return bytes;
 }

@@ -32,7 +32,8 @@ double triangle_area(const double* a, const double* b, const double* c, double p
   return 0.5 * edge(a, b, per_unit).cross(edge(a, c, per_unit)).norm();
 }
 
-bool has_no_area(const double* a, const double* b, const double* c, double per_unit) {
+bool detail::has_no_area_at_any_scale(const double* a, const double* b, const double* c,
+                                      double per_unit) {
   Vector3d u = edge(a, b, per_unit);
   Vector3d v = edge(a, c, per_unit);
   if (!is_flat(u, v)) return false;

@@ -32,6 +32,8 @@ class PolygonMesh {
     if (!is_one_more_triangle) note_end();
     ++polygons_;
   }
+  /// The corners added since the last call make triangles, after nothing but triangles.
+  void end_triangles() { polygons_ = corners.size() / 3; }
   [[nodiscard]] std::int64_t vertex_count() const {
     return static_cast<std::int64_t>(coordinates.size() / 3);
   }

@@ -10,10 +10,20 @@
 #include <utility>
 #include <vector>
 
+#include "timbre/analysis/core/huge_pages.h"
 #include "timbre/analysis/mesh/detail/growing_rows.h"
 #include "timbre/analysis/mesh/triangle_mesh.h"
 
 namespace timbre::detail {
+
+/// How many items ahead of their use they are fetched, where each is somewhere else in memory.
+inline constexpr std::size_t kAhead = 16;
+
+inline void prefetch([[maybe_unused]] const void* memory) {
+#if defined(__GNUC__)
+  __builtin_prefetch(memory);
+#endif
+}
 
 /// For each of `count` items, the first item equal to it (often itself). Items are dealt
 /// into `buckets` and sorted in each: linear where the buckets spread them, and
@@ -75,14 +85,21 @@ template <typename KeyOf, typename Less>
 std::vector<std::int32_t> repeated(std::size_t count, std::size_t buckets, KeyOf key_of,
                                    Less less) {
   constexpr std::size_t kShare = 8;  // few marks are left twice; close together they stay in cache
-  std::vector<std::uint64_t> once(buckets);
+  std::vector<std::uint64_t> once = with_huge_pages<std::uint64_t>(buckets);
   std::vector<std::uint64_t> again(buckets / kShare + 1);
   const auto mark_of = [](std::uint64_t hash) { return std::uint64_t{1} << (hash >> 58U); };
-  for (std::size_t i = 0; i < count; ++i) {
-    const ItemKey key = key_of(i);
-    const std::uint64_t mark = mark_of(key.hash);
-    if ((once[key.bucket] & mark) != 0) again[key.bucket / kShare] |= mark;
-    once[key.bucket] |= mark;
+  std::array<ItemKey, 64> keys;
+  for (std::size_t first = 0; first < count; first += keys.size()) {
+    const std::size_t here = std::min(keys.size(), count - first);
+    for (std::size_t i = 0; i < here; ++i) {
+      keys[i] = key_of(first + i);
+      prefetch(&once[keys[i].bucket]);
+    }
+    for (const ItemKey& key : std::span(keys).first(here)) {
+      const std::uint64_t mark = mark_of(key.hash);
+      if ((once[key.bucket] & mark) != 0) again[key.bucket / kShare] |= mark;
+      once[key.bucket] |= mark;
+    }
   }
 
   using Suspect = std::pair<std::uint64_t, std::int32_t>;  // hash and item
@@ -133,22 +150,31 @@ std::vector<std::int32_t> repeated(std::size_t count, std::size_t buckets, KeyOf
 /// Numbers positions in order of first appearance; -0 equals 0, no tolerance.
 class PositionTable {
  public:
+  using Position = std::array<double, 3>;
   /// @param expected  how many different positions, roughly
   explicit PositionTable(std::size_t expected);
-  /// The number of a position; `positions` holds those numbered so far, and a new one is added.
-  std::int32_t number_of(const std::array<double, 3>& position, GrowingRows<Points>& positions);
+  /// The numbers of some positions, without -0; at least as many `numbers`. `known` holds those
+  /// numbered so far, and new ones are added. Fast when it gets some hundreds at once.
+  void number(std::span<const Position> positions, GrowingRows<Points>& known,
+              std::int32_t* numbers);
 
  private:
-  static constexpr std::int32_t kEmpty = -1;
+  struct Slot {
+    std::int32_t number = -1;
+    std::uint32_t tag = 0;  // of the hash, so that few others are looked at
+  };
+  static constexpr std::size_t kRecent = std::size_t{1} << 12U;
+  std::int32_t number_of(const Position& position, std::uint64_t hash, GrowingRows<Points>& known);
   /// The slot of a position, or the empty one where it belongs.
-  std::size_t find(const std::array<double, 3>& position, const GrowingRows<Points>& positions);
-  void rebuild(std::size_t size, const GrowingRows<Points>& positions);
-  std::int32_t ordered_number_of(const std::array<double, 3>& position,
-                                 GrowingRows<Points>& positions);
+  std::size_t find(const Position& position, std::uint64_t hash, const GrowingRows<Points>& known);
+  void rebuild(std::size_t size, const GrowingRows<Points>& known);
+  std::int32_t ordered_number_of(const Position& position, GrowingRows<Points>& known);
 
-  std::vector<std::int32_t> slots_;  // a power of two of them, less than half in use
-  std::int64_t budget_ = 1024;       // slots that may still be looked at in vain
-  std::map<std::array<double, 3>, std::int32_t> ordered_;  // in use once the hashes fail
+  std::vector<Slot> slots_;     // a power of two of them, less than half in use
+  std::vector<Slot> recent_;    // by hash: facets follow their neighbours, and cache holds it
+  std::int64_t budget_ = 1024;  // slots that may still be looked at in vain
+  std::vector<std::uint64_t> hashes_;
+  std::map<Position, std::int32_t> ordered_;  // in use once the hashes fail
 };
 
 }  // namespace timbre::detail

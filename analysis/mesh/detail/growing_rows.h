@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "timbre/analysis/core/huge_pages.h"
+
 namespace timbre::detail {
 
 /// Numbers that arrive one after the other and end as a matrix of three columns, without a
@@ -16,7 +18,9 @@ class GrowingRows {
   using Number = typename Matrix::Scalar;
 
   void reserve_rows(std::size_t rows) {
-    if (3 * rows > capacity()) rows_.conservativeResize(static_cast<Eigen::Index>(rows), 3);
+    if (3 * rows <= capacity()) return;
+    rows_.conservativeResize(static_cast<Eigen::Index>(rows), 3);
+    prefer_huge_pages(rows_.data() + size_, (capacity() - size_) * sizeof(Number));
   }
   void push_back(Number number) { extend(1)[0] = number; }
   /// So many more numbers, for the caller to write; valid until the next call.

@@ -2,8 +2,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "timbre/analysis/mesh/detail/formats.h"
 #include "timbre/analysis/mesh/detail/grouping.h"
@@ -15,34 +17,52 @@ namespace {
 // become one vertex, numbered by first appearance.
 class FacetMesh {
  public:
-  FacetMesh(std::size_t expected_facets, bool soup) : soup_(soup), table_(expected_facets / 2) {}
-
-  void add_corner(const std::array<double, 3>& position) {
-    if (mesh_.corners.size() ==
-        static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-      throw Error(ErrorKind::bad_input, "", "size", "more than 2147483647 corners");
-    }
-    if (soup_) {
-      mesh_.corners.push_back(static_cast<std::int32_t>(mesh_.vertex_count()));
-      mesh_.add_vertex(position[0], position[1], position[2]);
-    } else {
-      // + 0.0 makes -0 to 0, so that the vertex does not depend on which of the two came first.
-      mesh_.corners.push_back(table_.number_of(
-          {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, mesh_.coordinates));
-    }
+  FacetMesh(std::size_t expected_facets, bool soup) : soup_(soup), table_(expected_facets / 2) {
+    mesh_.corners.reserve_rows(expected_facets);
+    waiting_.reserve(kBlock);
   }
-  void end_facet() { mesh_.end_polygon(); }
+
+  /// Three of them make a facet.
+  void add_corner(const PositionTable::Position& position) {
+    // + 0.0 makes -0 to 0, so that the vertex does not depend on which of the two came first.
+    waiting_.push_back(
+        soup_ ? position
+              : PositionTable::Position{position[0] + 0.0, position[1] + 0.0, position[2] + 0.0});
+    if (waiting_.size() == kBlock) add_waiting();
+  }
   void note_trailing_data() { mesh_.findings.add_count(Finding::trailing_data); }
 
   PolygonMesh take() && {
+    add_waiting();
     const auto corners = static_cast<std::int64_t>(mesh_.corners.size());
     if (!soup_) mesh_.findings.add_count(Finding::welded, corners - mesh_.vertex_count());
     return std::move(mesh_);
   }
 
  private:
+  static constexpr std::size_t kBlock = std::size_t{3} * 128;
+
+  void add_waiting() {
+    const std::size_t count = waiting_.size();
+    constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+    if (count > kMost - mesh_.corners.size()) {
+      throw Error(ErrorKind::bad_input, "", "size", "more than 2147483647 corners");
+    }
+    auto next = static_cast<std::int32_t>(mesh_.corners.size());
+    std::int32_t* const corners = mesh_.corners.extend(count);
+    if (soup_) {
+      std::iota(corners, corners + count, next);
+      for (const auto& p : waiting_) mesh_.add_vertex(p[0], p[1], p[2]);
+    } else {
+      table_.number(waiting_, mesh_.coordinates, corners);
+    }
+    mesh_.end_triangles();
+    waiting_.clear();
+  }
+
   bool soup_;
   PositionTable table_;
+  std::vector<PositionTable::Position> waiting_;
   PolygonMesh mesh_;
 };
 
@@ -72,7 +92,7 @@ class StlTextReader {
     for (int corner = 0; corner < 3; ++corner) {
       next();
       if (!is("vertex", word_)) throw unexpected("vertex");
-      std::array<double, 3> position{};
+      PositionTable::Position position{};
       for (double& c : position) c = cursor_.number();
       if (const auto word = cursor_.word(); !word.empty()) {
         throw cursor_.error(in_quotes(word) + " is one value too many");
@@ -81,7 +101,6 @@ class StlTextReader {
     }
     line("endloop");
     line("endfacet");
-    mesh_.end_facet();
   }
 
   // The first word of the next line that has one.
@@ -123,24 +142,26 @@ PolygonMesh read_stl_text(Cursor cursor, bool soup) {
 }
 
 PolygonMesh read_stl_binary(Cursor cursor, bool soup) {
-  constexpr std::uint64_t kNormal = 12;
-  constexpr std::uint64_t kAttribute = 2;
+  constexpr std::size_t kFacet = 50;
+  constexpr std::size_t kNormal = 12;
+  constexpr std::size_t kNumber = sizeof(float);
   cursor.take(80);
   const auto facets = cursor.value<std::uint32_t>(std::endian::little);
   FacetMesh mesh(facets, soup);
   for (std::uint32_t f = 0; f < facets; ++f) {
     cursor.enter("facet", f);
-    cursor.take(kNormal);
-    for (int corner = 0; corner < 3; ++corner) {
-      std::array<double, 3> position{};
-      for (double& c : position) {
-        c = cursor.value<float>(std::endian::little);
-        if (!std::isfinite(c)) throw cursor.error("coordinate is not finite");
+    const std::string_view facet = cursor.take(kFacet);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      PositionTable::Position position{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = kNormal + kNumber * (3 * corner + k);
+        position[k] = value_of<float>(facet.substr(at), std::endian::little);
+        if (!std::isfinite(position[k])) {
+          throw cursor.error_at(cursor.last_offset() + at, "coordinate is not finite");
+        }
       }
       mesh.add_corner(position);
     }
-    mesh.end_facet();
-    cursor.take(kAttribute);
   }
   if (cursor.left() > 0) mesh.note_trailing_data();
   return std::move(mesh).take();

@@ -89,6 +89,8 @@ LeadingNumber leading_number(std::string_view text) {
   static constexpr std::array<double, 23> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                      1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                      1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  static constexpr std::array<std::uint64_t, 9> kIntegerPowers = {
+      1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
   constexpr std::size_t kMostDigits = 19;  // 10^19 < 2^64
   constexpr std::uint64_t kMostExact = std::uint64_t{1} << 53U;
 
@@ -97,8 +99,11 @@ LeadingNumber leading_number(std::string_view text) {
   std::uint64_t digits = 0;
   const auto read_digits = [&] {
     const std::size_t first = at;
-    for (; at < text.size() && is_digit(text[at]); ++at) {
-      digits = 10 * digits + static_cast<std::uint64_t>(text[at] - '0');
+    for (bool more = true; more && at - first <= kMostDigits;) {
+      const LeadingDigits next = leading_digits(text.substr(at));
+      digits = digits * kIntegerPowers[next.length] + next.value;
+      at += next.length;
+      more = next.length == 8;
     }
     return at - first;
   };

@@ -50,8 +50,10 @@ bool Cursor::at_continuation(std::size_t& next_line) const {
 
 void Cursor::skip_blanks() {
   for (std::size_t next_line = 0;;) {
-    while (left() > 0 && is_blank(now())) ++at_;
-    if (left() == 0 || !at_continuation(next_line)) return;
+    std::size_t at = at_;
+    while (at < bytes_.size() && is_blank(bytes_[at])) ++at;
+    at_ = at;
+    if (at == bytes_.size() || bytes_[at] != '\\' || !at_continuation(next_line)) return;
     at_ = next_line;
   }
 }
@@ -64,7 +66,9 @@ std::string_view Cursor::word() {
   skip_blanks();
   last_ = at_;
   for (std::size_t next_line = 0;; ++at_) {
-    while (left() > 0 && !ends_word_[static_cast<unsigned char>(now())]) ++at_;
+    std::size_t at = at_;
+    while (at < bytes_.size() && !ends_word_[static_cast<unsigned char>(bytes_[at])]) ++at;
+    at_ = at;
     if (left() == 0 || now() != '\\' || at_continuation(next_line)) break;
   }
   return bytes_.substr(last_, at_ - last_);
@@ -112,16 +116,10 @@ double Cursor::number() {
 
 std::int64_t Cursor::integer() {
   skip_blanks();
-  constexpr std::size_t kSafeDigits = 18;
-  std::int64_t short_value = 0;
-  std::size_t end = at_;
-  for (; end < bytes_.size() && bytes_[end] >= '0' && bytes_[end] <= '9'; ++end) {
-    if (end - at_ == kSafeDigits) break;
-    short_value = 10 * short_value + (bytes_[end] - '0');
-  }
-  if (end > at_ && is_word_end(end)) {
-    last_ = std::exchange(at_, end);
-    return short_value;
+  const LeadingDigits lead = leading_digits(rest());
+  if (lead.length > 0 && is_word_end(at_ + lead.length)) {
+    last_ = std::exchange(at_, at_ + lead.length);
+    return static_cast<std::int64_t>(lead.value);
   }
   const std::string_view text = word();
   if (const auto value = parse_integer(text)) return *value;

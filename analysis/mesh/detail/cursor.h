@@ -30,6 +30,9 @@ class Cursor {
   /// The bytes that are left, without moving.
   [[nodiscard]] std::string_view rest() const { return bytes_.substr(at_); }
 
+  /// The bytes from the last word or value on.
+  [[nodiscard]] std::string_view since_last() const { return bytes_.substr(last_); }
+
   // Text.
 
   void expect_text(const TextRules& rules);

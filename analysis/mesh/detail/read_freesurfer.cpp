@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "timbre/analysis/mesh/detail/formats.h"
+#include "timbre/analysis/mesh/detail/plain_points.h"
 
 namespace timbre::detail {
 namespace {
@@ -105,7 +106,9 @@ PolygonMesh read_freesurfer_binary(Cursor cursor) {
   const Counts counts = read_counts(cursor, magic);
   PolygonMesh mesh;
   reserve(mesh, counts);
-  for (std::int64_t i = 0; i < counts.vertices; ++i) {
+  std::int64_t plain = 0;
+  if (magic != kOldQuads) plain = read_plain_points<float>(cursor, counts.vertices, kOrder, mesh);
+  for (std::int64_t i = plain; i < counts.vertices; ++i) {
     cursor.enter("vertex", i);
     const double x = coordinate(cursor, magic);
     const double y = coordinate(cursor, magic);

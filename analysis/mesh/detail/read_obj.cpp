@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -89,8 +90,13 @@ class ObjReader {
   // v, v/t, v//n or v/t/n. Positive numbers may name a later vertex, negative ones count
   // back from here.
   std::int32_t corner(std::string_view word) {
-    const std::size_t slash = std::min(word.find('/'), word.size());
-    const auto number = parse_integer(word.substr(0, slash));
+    const LeadingDigits lead = leading_digits(cursor_.since_last());
+    std::size_t slash = lead.length;
+    std::optional<std::int64_t> number = static_cast<std::int64_t>(lead.value);
+    if (lead.length == 0 || (lead.length < word.size() && word[lead.length] != '/')) {
+      slash = std::min(word.find('/'), word.size());
+      number = parse_integer(word.substr(0, slash));
+    }
     if (!number || !are_slots(word.substr(slash))) {
       throw cursor_.error(in_quotes(word) + " is not v, v/t, v//n or v/t/n in integers of 64 bits");
     }

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/analysis/mesh/detail/formats.h"
+#include "timbre/analysis/mesh/detail/plain_points.h"
 
 namespace timbre::detail {
 namespace {
@@ -143,6 +145,33 @@ double finite_coordinate(Cursor& cursor, std::endian order) {
   return value;
 }
 
+// Triangles up to the first face that is odd in any way; returns how many. Each is a row of
+// 32-bit integers: 3, its corners, and 0 if there is a number of colours.
+std::int64_t read_plain_triangles(Cursor& cursor, const Counts& counts, std::endian order,
+                                  bool has_colours, PolygonMesh& mesh) {
+  const std::size_t size = has_colours ? 20 : 16;
+  const std::size_t rows = std::min(static_cast<std::size_t>(counts.faces), cursor.left() / size);
+  std::int32_t* const corners = mesh.corners.extend(3 * rows);
+  const std::string_view bytes = cursor.rest();
+  std::size_t read = 0;
+  for (; read < rows; ++read) {
+    const std::string_view row = bytes.substr(read * size, size);
+    const auto number = [&](std::size_t i) {
+      return value_of<std::uint32_t>(row.substr(4 * i), order);
+    };
+    bool is_plain = number(0) == 3 && (!has_colours || number(4) == 0);
+    for (std::size_t i = 1; i <= 3; ++i) {
+      is_plain = is_plain && number(i) < counts.vertices;
+      corners[3 * read + i - 1] = static_cast<std::int32_t>(number(i));
+    }
+    if (!is_plain) break;
+  }
+  mesh.corners.shrink(3 * (rows - read));
+  mesh.end_triangles();
+  cursor.take(read * size);
+  return static_cast<std::int64_t>(read);
+}
+
 PolygonMesh read_binary(Cursor cursor, std::endian order) {
   const auto integer = [&] { return cursor.value<std::int32_t>(order); };
   const std::int64_t vertices = integer();
@@ -155,20 +184,23 @@ PolygonMesh read_binary(Cursor cursor, std::endian order) {
   PolygonMesh mesh;
   mesh.coordinates.reserve_rows(static_cast<std::size_t>(counts.vertices));
   mesh.corners.reserve_rows(static_cast<std::size_t>(counts.faces));
-  for (std::int64_t i = 0; i < counts.vertices; ++i) {
+  std::int64_t i = read_plain_points<float>(cursor, counts.vertices, order, mesh);
+  for (; i < counts.vertices; ++i) {
     cursor.enter("vertex", i);
     const double x = finite_coordinate(cursor, order);
     const double y = finite_coordinate(cursor, order);
     mesh.add_vertex(x, y, finite_coordinate(cursor, order));
   }
-  for (std::int64_t i = 0; i < counts.faces; ++i) {
+  const bool has_colours = order == std::endian::big;  // other writers know none
+  i = read_plain_triangles(cursor, counts, order, has_colours, mesh);
+  for (; i < counts.faces; ++i) {
     cursor.enter("face", i);
     const std::int64_t corners = cursor.checked_count(integer(), 4, "corners");
     for (std::int64_t c = 0; c < corners; ++c) {
       mesh.corners.push_back(cursor.checked_index(integer(), counts.vertices));
     }
     mesh.end_polygon();
-    if (order == std::endian::little) continue;  // its writers know no colours
+    if (!has_colours) continue;
     cursor.take(4 * static_cast<std::uint64_t>(cursor.checked_count(integer(), 4, "colours")));
   }
   if (cursor.rest().find_first_not_of(" \t\r\n\v\f") != std::string_view::npos) {

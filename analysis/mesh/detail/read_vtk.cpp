@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "timbre/analysis/mesh/detail/formats.h"
+#include "timbre/analysis/mesh/detail/plain_points.h"
 
 namespace timbre::detail {
 namespace {
@@ -108,7 +109,7 @@ class VtkReader {
     check(place, declared, 3 * least_bytes(type), "points");
     begin_data();
     mesh_.coordinates.reserve_rows(static_cast<std::size_t>(declared));
-    for (std::int64_t i = 0; i < declared; ++i) {
+    for (std::int64_t i = plain_points(declared, type); i < declared; ++i) {
       cursor_.enter("vertex", i);
       const double x = coordinate(type);
       const double y = coordinate(type);
@@ -116,6 +117,12 @@ class VtkReader {
     }
     end_data();
     has_points_ = true;
+  }
+
+  std::int64_t plain_points(std::int64_t count, const NumberType& type) {
+    if (!binary_ || !type.real) return 0;
+    return type.size == 4 ? read_plain_points<float>(cursor_, count, std::endian::big, mesh_)
+                          : read_plain_points<double>(cursor_, count, std::endian::big, mesh_);
   }
 
   // Either counts and corners in turn, or, since version 5.1, two arrays.

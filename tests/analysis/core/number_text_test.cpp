@@ -116,6 +116,23 @@ TEST(ParseDouble, GivesTheBitsOfFromCharsForEveryShapeOfText) {
   EXPECT_GT(taken, 100000);
 }
 
+TEST(LeadingDigits, StopAfterEightOrBeforeAnyOtherByte) {
+  for (int other = 0; other < 256; ++other) {
+    if (other >= '0' && other <= '9') continue;
+    for (const std::string digits : {"", "7", "07", "980", "1234567", "00000009", "98765432"}) {
+      for (const std::string after : {"", "9", "99999999", "\xff\x80\x2f\x3a"}) {
+        const auto [value, length] = leading_digits(digits + static_cast<char>(other) + after);
+        ASSERT_EQ(length, digits.size()) << other;
+        ASSERT_EQ(value, digits.empty() ? 0 : std::stoull(digits)) << other;
+      }
+    }
+  }
+  EXPECT_EQ(leading_digits("").length, 0U);
+  EXPECT_EQ(leading_digits("123").value, 123U);
+  EXPECT_EQ(leading_digits("123456789").length, 8U);
+  EXPECT_EQ(leading_digits("123456789").value, 12345678U);
+}
+
 TEST(LeadingNumber, StopsWhereTheNumberStopsAndLeavesHardOnesAlone) {
   const auto length = [](std::string_view text) { return leading_number(text).length; };
   EXPECT_EQ(length("1.25e2 x"), 6U);

@@ -60,9 +60,16 @@ void expect_first_appearances(const std::vector<std::array<double, 3>>& position
   PositionTable table(4);
   GrowingRows<Points> rows;
   std::map<std::array<double, 3>, std::int32_t> expected;
-  for (const auto& position : positions) {
-    const auto next = static_cast<std::int32_t>(expected.size());
-    ASSERT_EQ(table.number_of(position, rows), expected.emplace(position, next).first->second);
+  const std::span all(positions);
+  std::size_t begin = 0;
+  for (std::size_t block = 1; begin < all.size(); begin += block, block = block * 5 % 997) {
+    const auto some = all.subspan(begin, std::min(block, all.size() - begin));
+    std::vector<std::int32_t> numbers(some.size());
+    table.number(some, rows, numbers.data());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto next = static_cast<std::int32_t>(expected.size());
+      ASSERT_EQ(numbers[i], expected.emplace(some[i], next).first->second);
+    }
   }
   ASSERT_EQ(rows.size(), 3 * expected.size());
   for (const auto& [position, number] : expected) {

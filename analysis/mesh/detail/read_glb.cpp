@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -123,14 +124,16 @@ class GlbReader {
   }
 
   void push(const std::vector<std::int64_t>& nodes, const Placement& parent) {
-    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
-      if (std::cmp_less(*node, seen_.size())) {
-        auto seen = seen_[static_cast<std::size_t>(*node)];
-        if (seen) throw no_tree(*node);
+    const auto before = static_cast<std::ptrdiff_t>(open_.size());
+    for (const std::int64_t node : nodes) {
+      if (std::cmp_less(node, seen_.size())) {
+        auto seen = seen_[static_cast<std::size_t>(node)];
+        if (seen) throw no_tree(node);
         seen = true;
       }
-      open_.push_back({*node, parent});
+      open_.push_back({node, parent});
     }
+    std::reverse(open_.begin() + before, open_.end());
   }
 
   void add_mesh(std::int64_t number, const Placement& placement) {

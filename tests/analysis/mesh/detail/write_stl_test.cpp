@@ -30,7 +30,7 @@ TEST(StlBytes, ReadsBackTheSameFacetsAsFloats) {
 
 TEST(StlBytes, WritesUnitNormalsAndNoneWithoutArea) {
   const std::string bytes =
-      stl_bytes(make_mesh({{0, 0, 0}, {1e-20, 0, 0}, {0, 1e-20, 0}}, {{0, 1, 2}, {1, 1, 2}}));
+      stl_bytes(make_mesh({{0, 0, 0}, {1e-20, 0, 0}, {0, 1e-20, 0}}, {{0, 1, 2}, {1, 1, 1}}));
   EXPECT_EQ(bytes.size(), 84U + 2 * 50U);
   EXPECT_EQ(bytes.substr(0, 18), "created by timbre ");
   EXPECT_EQ(bytes.substr(84, 12), std::string("\0\0\0\0\0\0\0\0\0\0\x80\x3f", 12));

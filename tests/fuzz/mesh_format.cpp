@@ -43,7 +43,7 @@ bool is_of_this_format(std::string_view input) {
 }
 
 // Elements of a mesh for each byte of a GLB, whose scene may place a mesh again and again.
-constexpr std::size_t kMostElements = 64;
+constexpr std::size_t kMostElements = 16;
 
 // Enough for what the tables of a mesh take beside the text that they come from.
 std::size_t most_memory(std::string_view input, const MeshFile& file) {

@@ -96,7 +96,8 @@ class GlbReader {
 
  private:
   // Of the mesh, for each byte of the file: a few bytes may place a large mesh again and again.
-  static constexpr std::uint64_t kMostElements = 64;
+  static constexpr std::uint64_t kMostElements = 16;
+  static constexpr std::int64_t kVisit = 8;  // as many elements as a look at a primitive takes time
 
   struct Visit {
     std::int64_t node = 0;
@@ -142,7 +143,7 @@ class GlbReader {
     std::size_t index = 0;
     for (const GlbPrimitive& primitive : document_.primitives(number)) {
       const std::string here = place + ", primitive " + std::to_string(index++);
-      charge(1, here);
+      charge(kVisit, here);
       if (primitive.mode < GlbMode::triangles) {
         mesh_.findings.add_count(Finding::dropped_element);
         continue;

@@ -35,6 +35,8 @@ PolygonMesh read_polygons(FileFormat format, std::string_view bytes, const ReadO
       return detail::read_ply(cursor);
     case FileFormat::vtk:
       return detail::read_vtk(cursor);
+    case FileFormat::glb:
+      return detail::read_glb(cursor);
     case FileFormat::freesurfer_text:
       return detail::read_freesurfer_text(cursor);
     case FileFormat::freesurfer_binary:
@@ -54,6 +56,8 @@ const char* name_of(FileFormat format) {
       return "ply";
     case FileFormat::vtk:
       return "vtk";
+    case FileFormat::glb:
+      return "glb";
     case FileFormat::freesurfer_text:
     case FileFormat::freesurfer_binary:
       return "freesurfer";

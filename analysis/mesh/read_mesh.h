@@ -24,14 +24,15 @@ struct ReadOptions {
 struct MeshFile {
   TriangleMesh mesh;
   std::vector<ReadWarning> warnings;  ///< sorted by code
-  std::string format;  ///< what the content was: off, obj, ply, stl, freesurfer or vtk
+  std::string format;  ///< what the content was: off, obj, ply, stl, freesurfer, vtk or glb
 };
 
-/// Reads OFF, OBJ, PLY, STL, FreeSurfer surfaces (triangles, quads, .asc) or legacy VTK,
-/// told apart by content first and by ending second, `.gz` unpacked. Vertex i of the file is row i
-/// of `vertices`: none is merged, dropped or moved (STL, which has no vertex list, gets one vertex
-/// for each distinct corner position, numbered by first appearance). Polygons become triangles in
-/// place. `-` reads standard input.
+/// Reads OFF, OBJ, PLY, STL, FreeSurfer surfaces (triangles, quads, .asc), legacy VTK or GLB
+/// (binary glTF 2, uncompressed, placed as its scene says), told apart by content first and by
+/// ending second, `.gz` unpacked. Vertex i of the file is row i of `vertices`: none is merged,
+/// dropped or moved (STL, which has no vertex list, gets one vertex for each distinct corner
+/// position, numbered by first appearance). Polygons become triangles in place. `-` reads standard
+/// input.
 ///
 /// Thread-safe; shares no state, uses no locale.
 /// @throws Error  bad_input with file, place and cause; io when the system refuses

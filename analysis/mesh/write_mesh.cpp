@@ -3,30 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstring>
 #include <span>
 #include <string_view>
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/output_file.h"
+#include "timbre/analysis/mesh/detail/append_number.h"
+#include "timbre/analysis/mesh/detail/writers.h"
 
 namespace timbre {
 namespace {
+
+using detail::append_big_endian;
+using detail::append_text;
+using detail::to_float;
 
 static_assert(std::endian::native == std::endian::little, "PLY bodies are copied as they lie");
 
 // FreeSurfer's surfaces have no ending but their name: lh.white.
 constexpr std::array<std::string_view, 7> kFreesurferEndings = {
     ".white", ".pial", ".inflated", ".sphere", ".orig", ".smoothwm", ".surf"};
-
-template <typename Number>
-void append(std::string& out, Number value) {
-  std::array<char, 32> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  out.append(buffer.data(), result.ptr);
-}
 
 // `a b c` for each row, each number raised by `offset`.
 template <typename Table>
@@ -36,7 +32,7 @@ void append_rows(std::string& out, const Table& table, std::string_view before,
     out += before;
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (k > 0) out += ' ';
-      append(out, offset == 0 ? table(i, k) : table(i, k) + offset);
+      append_text(out, offset == 0 ? table(i, k) : table(i, k) + offset);
     }
     out += after;
     out += '\n';
@@ -76,20 +72,6 @@ std::string ply_bytes(const TriangleMesh& mesh) {
     out.append(reinterpret_cast<const char*>(mesh.faces.data() + 3 * i), kRow);
   }
   return out;
-}
-
-// The value's bytes, most significant first.
-template <typename Number>
-void append_big_endian(std::string& out, Number value) {
-  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
-  out.append(raw.rbegin(), raw.rend());
-}
-
-float to_float(double value) {
-  const auto rounded = static_cast<float>(value);
-  if (std::isfinite(rounded)) return rounded;
-  throw Error(ErrorKind::bad_request, "", "output",
-              "a coordinate is beyond the range of a float; .ply keeps it");
 }
 
 std::string freesurfer_bytes(const TriangleMesh& mesh) {
@@ -141,14 +123,16 @@ MeshFormat mesh_format_of(const std::string& path) {
   if (ending == ".obj") return MeshFormat::obj;
   if (ending == ".ply") return MeshFormat::ply;
   if (ending == ".vtk") return MeshFormat::vtk;
+  if (ending == ".glb") return MeshFormat::glb;
+  if (ending == ".stl") return MeshFormat::stl;
   if (ending == ".asc") return MeshFormat::freesurfer_text;
   for (const std::string_view name : kFreesurferEndings) {
     if (ending == name) return MeshFormat::freesurfer;
   }
   throw Error(
       ErrorKind::bad_request, path, "output",
-      "the ending tells the format; .off, .obj, .ply, .vtk, .asc and FreeSurfer's .white, .pial, "
-      ".inflated, .sphere, .orig, .smoothwm, .surf can be written");
+      "the ending tells the format; .off, .obj, .ply, .vtk, .glb, .stl, .asc and FreeSurfer's "
+      ".white, .pial, .inflated, .sphere, .orig, .smoothwm, .surf can be written");
 }
 
 std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format) {
@@ -159,6 +143,10 @@ std::string to_mesh_bytes(const TriangleMesh& mesh, MeshFormat format) {
       return obj_bytes(mesh);
     case MeshFormat::vtk:
       return vtk_bytes(mesh);
+    case MeshFormat::glb:
+      return detail::glb_bytes(mesh);
+    case MeshFormat::stl:
+      return detail::stl_bytes(mesh);
     case MeshFormat::freesurfer:
       return freesurfer_bytes(mesh);
     case MeshFormat::freesurfer_text:

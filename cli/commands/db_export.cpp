@@ -50,9 +50,9 @@ void add_db_export(CLI::App& db, Context& context) {
                    "the eigenvalues, at the mesh's own scale, as .npy, .npz or text");
   add_common_options(command, context, true);
   command.footer(
-      "The mesh comes out bit for bit as it went in, as .off, .obj, .ply, .vtk or .asc. "
-      "FreeSurfer's\n"
-      ".white, .pial, .inflated, .sphere, .orig, .smoothwm and .surf round to float.\n"
+      "The mesh comes out bit for bit as it went in, as .off, .obj, .ply, .vtk or .asc. These\n"
+      "round to float: .glb, .stl (which keeps no vertex numbers), and FreeSurfer's .white,\n"
+      ".pial, .inflated, .sphere, .orig, .smoothwm and .surf.\n"
       "Example:\n  timbre db export shapes.timbre cat3 -o cat3.ply");
   command.callback([args, &context] { run(*args, context); });
 }

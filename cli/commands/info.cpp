@@ -111,7 +111,7 @@ void add_info(CLI::App& app, Context& context) {
       *app.add_subcommand("info", "What a mesh is, what is odd about it, and what that means");
   command
       .add_option("MESH", *mesh,
-                  "OFF, OBJ, PLY, STL, FreeSurfer or VTK file, also .gz; - for stdin")
+                  "OFF, OBJ, PLY, STL, FreeSurfer, VTK or GLB file, also .gz; - for stdin")
       ->required();
   CLI::Option* const report = command.add_option(
       "--report", page->output, "also write a page with pictures on which each defect is marked");

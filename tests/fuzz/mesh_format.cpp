@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "timbre/analysis/mesh/detail/formats.h"
@@ -40,13 +42,26 @@ bool is_of_this_format(std::string_view input) {
   }
 }
 
+// Elements of a mesh for each byte of a GLB, whose scene may place a mesh again and again.
+constexpr std::size_t kMostElements = 16;
+
+// Enough for what the tables of a mesh take beside the text that they come from.
+std::size_t most_memory(std::string_view input, const MeshFile& file) {
+  std::size_t what_is_there = input.size();
+  if (kFormat == FileFormat::glb) {
+    const auto elements =
+        static_cast<std::size_t>(file.mesh.vertices.rows() + file.mesh.faces.size());
+    require(elements <= kMostElements * input.size(), "few bytes do not make a large mesh");
+    what_is_there += elements;
+  }
+  return 200 * what_is_there + (std::size_t{1} << 16);
+}
+
 std::optional<MeshFile> read(std::string_view input, const ReadOptions& options = {}) {
-  // Enough for what the tables of a mesh take beside the text that they come from.
-  const std::size_t most_memory = 200 * input.size() + (std::size_t{1} << 16);
   try {
     const MemoryWatch watch;
     MeshFile file = read_mesh_bytes(input, input_name(), options);
-    require(watch.peak() <= most_memory, "a reader takes memory for what is there");
+    require(watch.peak() <= most_memory(input, file), "a reader takes memory for what is there");
     return file;
   } catch (const Error& error) {
     require_plain(error, ErrorKind::bad_input);
@@ -115,6 +130,21 @@ void require_round_trip(const TriangleMesh& mesh) {
   }
 }
 
+// Formats with float coordinates keep no more than these.
+void require_round_trip_of_floats(TriangleMesh mesh) {
+  if (mesh.faces.rows() == 0) return;  // cannot say so
+  for (double& c : mesh.vertices.reshaped()) {
+    if (std::abs(c) > std::numeric_limits<float>::max()) return;
+    c = static_cast<float>(c);
+  }
+  require(same(read_mesh_bytes(to_mesh_bytes(mesh, MeshFormat::glb), "written").mesh, mesh),
+          "a written GLB is read back");
+  const TriangleMesh facets =
+      read_mesh_bytes(to_mesh_bytes(mesh, MeshFormat::stl), "written", {.soup = true}).mesh;
+  require(facets.vertices == mesh.vertices(mesh.faces.reshaped<Eigen::RowMajor>(), Eigen::all),
+          "a written STL has the same facets");
+}
+
 // A file's last line may lack its end, and may be followed by empty ones.
 void require_indifference_to_space_at_the_end(std::string_view input, const MeshFile& file) {
   if (kFormat == FileFormat::stl_binary) return;
@@ -152,7 +182,10 @@ void examine(std::string_view input) {
   if (!file) return;
   require_sound(*file);
   require_plain_diagnosis(*file);
+  // Larger only where a scene places a mesh again and again, and then slow to write so often.
+  if (std::cmp_greater(file->mesh.faces.rows(), input.size())) return;
   require_round_trip(file->mesh);
+  require_round_trip_of_floats(file->mesh);
   require_indifference_to_space_at_the_end(input, *file);
   if (file->format == "stl") require_soup_of_the_same_facets(input, *file);
 }

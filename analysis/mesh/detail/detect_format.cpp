@@ -68,6 +68,9 @@ void refuse_known_mistakes(std::string_view first_word, std::string_view second_
   if (word == "version" && second_word.starts_with("https://git-lfs")) {
     refuse("line 1", "a Git LFS pointer, not the mesh itself; fetch it with 'git lfs pull'");
   }
+  if (word.starts_with('{')) {
+    refuse("line 1", "glTF or other JSON as text; save it as binary .glb");
+  }
   if (is_gzip(first_word)) refuse("byte 0", "gzip data; it is unpacked when the name ends in .gz");
 }
 
@@ -99,6 +102,7 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   // A surface cut after 84 bytes looks like an STL of no facets.
   if (is_freesurfer(head)) return FileFormat::freesurfer_binary;
   if (stl && size == kStlHeader) return FileFormat::stl_binary;
+  if (head.starts_with("glTF")) return FileFormat::glb;
   if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff")) {
     refuse("byte 0", "UTF-16 text; save it as UTF-8");
   }
@@ -133,7 +137,7 @@ std::optional<FileFormat> detect_format(std::string_view head, std::uint64_t siz
   if (ending == ".asc") return FileFormat::freesurfer_text;
   if (ending == ".stl") require_stl_size(head, size);
   refuse("line 1",
-         "no known format; OFF, OBJ, PLY, STL, FreeSurfer and VTK are read, also with .gz");
+         "no known format; OFF, OBJ, PLY, STL, FreeSurfer, VTK and GLB are read, also with .gz");
 }
 
 std::string_view without_mark(std::string_view text) {

@@ -65,6 +65,7 @@ enum class FileFormat : std::uint8_t {
   freesurfer_text,
   freesurfer_binary,
   vtk,
+  glb,
 };
 
 /// Tells the format by content first and by the name's ending second.
@@ -90,5 +91,9 @@ enum class FileFormat : std::uint8_t {
 [[nodiscard]] PolygonMesh read_freesurfer_text(Cursor cursor);
 [[nodiscard]] PolygonMesh read_freesurfer_binary(Cursor cursor);
 [[nodiscard]] PolygonMesh read_vtk(Cursor cursor);
+/// Binary glTF 2: the meshes of the default scene, where its nodes place them. A mesh that n
+/// nodes place is there n times. Primitives of one mesh that name the same positions share their
+/// vertices; no others are joined. Skinned and morphed meshes stand as they were modelled.
+[[nodiscard]] PolygonMesh read_glb(Cursor cursor);
 
 }  // namespace timbre::detail

@@ -84,7 +84,8 @@ TEST(ReadMesh, SkipsAByteOrderMark) {
 
 TEST(ReadMesh, SaysWhatAFileSeemsToBe) {
   const std::string unknown =
-      "line 1: no known format; OFF, OBJ, PLY, STL, FreeSurfer and VTK are read, also with .gz";
+      "line 1: no known format; OFF, OBJ, PLY, STL, FreeSurfer, VTK and GLB are read, also with "
+      ".gz";
   expect_refused(
       {
           {"", "byte 0: the file is empty"},
@@ -101,6 +102,7 @@ TEST(ReadMesh, SaysWhatAFileSeemsToBe) {
           {"\n<!DOCTYPE html>", "line 1: a web page or XML, not a mesh; download the file itself"},
           {"<html>", "line 1: a web page or XML, not a mesh; download the file itself"},
           {"<?xml ?>", "line 1: a web page or XML, not a mesh; download the file itself"},
+          {"\n {\"asset\": {}}", "line 1: glTF or other JSON as text; save it as binary .glb"},
           {"version https://git-lfs.github.com/spec/v1\n",
            "line 1: a Git LFS pointer, not the mesh itself; fetch it with 'git lfs pull'"},
           {"\x1f\x8b\x08", "byte 0: gzip data; it is unpacked when the name ends in .gz"},

@@ -8,6 +8,7 @@
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/mesh/read_mesh.h"
 #include "timbre/tests/support/mesh_shapes.h"
+#include "timbre/tests/support/refused_request.h"
 #include "timbre/tests/support/temporary_folder.h"
 
 namespace timbre {
@@ -56,22 +57,19 @@ TEST(ToMeshBytes, WritesShortNumbers) {
 
 TEST(WriteMesh, ChoosesTheFormatByTheEnding) {
   const TemporaryFolder folder;
-  for (const std::string name :
-       {"a.off", "a.OBJ", "a.ply", "a.asc", "a.vtk", "lh.white", "rh.PIAL", "inner.surf"}) {
+  for (const std::string name : {"a.off", "a.OBJ", "a.ply", "a.asc", "a.vtk", "a.glb", "lh.white",
+                                 "rh.PIAL", "inner.surf"}) {
     write_mesh(tetrahedron(), folder / name);
     EXPECT_EQ(read_mesh(folder / name).mesh.faces, tetrahedron().faces);
   }
-  try {
-    write_mesh(tetrahedron(), folder / "a.stl");
-    FAIL() << "no exception";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_request);
-    EXPECT_EQ(error.what(),
-              folder / "a.stl" +
-                  ": output: the ending tells the format; .off, .obj, .ply, .vtk, .asc and "
-                  "FreeSurfer's .white, .pial, .inflated, .sphere, .orig, .smoothwm, "
-                  ".surf can be written");
-  }
+  write_mesh(tetrahedron(), folder / "a.stl");
+  EXPECT_EQ(read_mesh(folder / "a.stl").format, "stl");
+  EXPECT_EQ(
+      refused_request([&] { write_mesh(tetrahedron(), folder / "a.dae"); }),
+      folder / "a.dae" +
+          ": output: the ending tells the format; .off, .obj, .ply, .vtk, .glb, .stl, .asc "
+          "and FreeSurfer's .white, .pial, .inflated, .sphere, .orig, .smoothwm, .surf can be "
+          "written");
 }
 
 TEST(WriteMesh, ReplacesOnlyWhenToldTo) {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "timbre/analysis/mesh/write_mesh.h"
-#include "timbre/tests/support/big_endian.h"
+#include "timbre/tests/support/byte_order.h"
 #include "timbre/tests/support/mesh_shapes.h"
 #include "timbre/tests/support/read_text.h"
 

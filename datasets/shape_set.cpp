@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kMeshFolders = {"",       "off",           "shapes",
                                      "meshes", "registrations", "training/registrations"};
-constexpr std::array kMeshEndings = {".off", ".obj", ".ply", ".stl", ".vert"};
+constexpr std::array kMeshEndings = {".off", ".obj", ".ply", ".stl", ".vtk", ".glb", ".vert"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -98,9 +98,10 @@ void find_meshes(ShapeSet& set) {
     set.truth_folder = fs::is_directory(apart, failure) ? apart.string() : folder.string();
     return;
   }
-  throw Error(ErrorKind::bad_input, set.folder, "",
-              "holds no mesh (.off, .obj, .ply, .stl, .vert with .tri), nor do its folders off, "
-              "shapes, meshes, registrations");
+  throw Error(
+      ErrorKind::bad_input, set.folder, "",
+      "holds no mesh (.off, .obj, .ply, .stl, .vtk, .glb, .vert with .tri), nor do its folders "
+      "off, shapes, meshes, registrations");
 }
 
 bool is_number(const std::string& text) {

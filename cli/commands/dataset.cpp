@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -15,8 +14,6 @@
 
 namespace timbre::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 // A surface of one parameter: about how many vertices.
 struct AnalyticKind {
@@ -66,10 +63,7 @@ struct AnalyticArguments {
 MeshFormat format_for(const AnalyticArguments& args, const std::string& path) {
   if (!args.format.empty()) return mesh_formats().at(args.format);
   if (path == "-") return MeshFormat::ply;
-  const std::string ending = fs::path(path).extension().string();
-  const auto known = mesh_formats().find(ending.empty() ? "" : ending.substr(1));
-  if (known != mesh_formats().end()) return known->second;
-  throw Error(ErrorKind::bad_request, path, "", "ending is none of .ply, .off, .obj; see --format");
+  return mesh_format_of(path);
 }
 
 void make_analytic(const AnalyticKind& kind, const AnalyticArguments& args,

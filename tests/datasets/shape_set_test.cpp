@@ -183,8 +183,8 @@ TEST(ReadShapeSet, TakesALargeFolderInItsStride) {
 TEST(ReadShapeSet, SaysWhyAFolderIsNoSet) {
   const SetFolder folder;
   EXPECT_EQ(refused(folder),
-            "SET: holds no mesh (.off, .obj, .ply, .stl, .vert with .tri), nor do its folders off, "
-            "shapes, meshes, registrations");
+            "SET: holds no mesh (.off, .obj, .ply, .stl, .vtk, .glb, .vert with .tri), nor do its "
+            "folders off, shapes, meshes, registrations");
   EXPECT_EQ(refusal_of(folder, ErrorKind::io, [&] { (void)read_shape_set(folder / "none"); }),
             "SET/none: No such file or directory");
   folder.put("file", "");

@@ -1,5 +1,4 @@
-// One mesh format, TIMBRE_FUZZ_FORMAT of `FileFormat`: any bytes become a sound mesh, which
-// survives writing and reading, or one line.
+// One mesh format: any bytes become a sound mesh, which survives writing and reading, or one line.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,20 +14,35 @@
 #include "timbre/analysis/mesh/write_mesh.h"
 #include "timbre/tests/fuzz/memory_watch.h"
 #include "timbre/tests/fuzz/target.h"
-
-#define TIMBRE_TEXT_OF(name) #name
-#define TIMBRE_TEXT(name) TIMBRE_TEXT_OF(name)
+#include "timbre/tests/fuzz/tested_format.h"
 
 namespace timbre::fuzz {
 namespace {
 
 using detail::FileFormat;
 
-constexpr FileFormat kFormat = FileFormat::TIMBRE_FUZZ_FORMAT;
+FileFormat format_under_test() {
+  constexpr std::array<std::pair<std::string_view, FileFormat>, 9> kFormats = {
+      {{"off", FileFormat::off},
+       {"obj", FileFormat::obj},
+       {"ply", FileFormat::ply},
+       {"stl_text", FileFormat::stl_text},
+       {"stl_binary", FileFormat::stl_binary},
+       {"freesurfer_text", FileFormat::freesurfer_text},
+       {"freesurfer_binary", FileFormat::freesurfer_binary},
+       {"vtk", FileFormat::vtk},
+       {"glb", FileFormat::glb}}};
+  for (const auto& [word, format] : kFormats) {
+    if (word == tested_format) return format;
+  }
+  require(false, "the format under test is known");
+  return {};
+}
+const FileFormat kFormat = format_under_test();
 
 // Of `stl_text` the ending is `stl`.
 std::string input_name() {
-  const std::string word = TIMBRE_TEXT(TIMBRE_FUZZ_FORMAT);
+  const std::string word = tested_format;
   return "input." + word.substr(0, word.find('_'));
 }
 

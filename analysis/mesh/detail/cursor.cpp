@@ -8,7 +8,6 @@
 namespace timbre::detail {
 namespace {
 
-constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 constexpr bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
 std::size_t line_of(std::string_view bytes, std::size_t offset) {
@@ -48,13 +47,10 @@ bool Cursor::at_continuation(std::size_t& next_line) const {
   return true;
 }
 
-void Cursor::skip_blanks() {
-  for (std::size_t next_line = 0;;) {
-    std::size_t at = at_;
-    while (at < bytes_.size() && is_blank(bytes_[at])) ++at;
-    at_ = at;
-    if (at == bytes_.size() || bytes_[at] != '\\' || !at_continuation(next_line)) return;
+void Cursor::skip_continuations() {
+  for (std::size_t next_line = 0; left() > 0 && at_continuation(next_line);) {
     at_ = next_line;
+    while (left() > 0 && is_blank(now())) ++at_;
   }
 }
 
@@ -115,12 +111,7 @@ double Cursor::number() {
 }
 
 std::int64_t Cursor::integer() {
-  skip_blanks();
-  const LeadingDigits lead = leading_digits(rest());
-  if (lead.length > 0 && is_word_end(at_ + lead.length)) {
-    last_ = std::exchange(at_, at_ + lead.length);
-    return static_cast<std::int64_t>(lead.value);
-  }
+  if (const auto value = plain_integer()) return *value;
   const std::string_view text = word();
   if (const auto value = parse_integer(text)) return *value;
   if (text.empty()) throw error("an integer is missing");

@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/number_text.h"
 
 namespace timbre::detail {
 
@@ -50,6 +52,15 @@ class Cursor {
   double number();
   /// The next word as an integer. @throws Error  if it is none, or is missing
   std::int64_t integer();
+  /// The next word if it is nothing but one to eight digits; otherwise it is still the next.
+  std::optional<std::int64_t> plain_integer() {
+    skip_blanks();
+    const LeadingDigits lead = leading_digits(rest());
+    if (lead.length == 0 || !is_word_end(at_ + lead.length)) return std::nullopt;
+    last_ = at_;
+    at_ += lead.length;
+    return static_cast<std::int64_t>(lead.value);
+  }
   /// The next word as a vertex number below `count`.
   std::int32_t vertex_index(std::int64_t count);
 
@@ -105,7 +116,14 @@ class Cursor {
     return ends_word_[static_cast<unsigned char>(bytes_[end])] && bytes_[end] != '\\';
   }
   [[nodiscard]] bool at_continuation(std::size_t& next_line) const;
-  void skip_blanks();
+  static constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+  void skip_blanks() {
+    std::size_t at = at_;
+    while (at < bytes_.size() && is_blank(bytes_[at])) ++at;
+    at_ = at;
+    if (at < bytes_.size() && bytes_[at] == '\\') skip_continuations();
+  }
+  void skip_continuations();
   void skip_line_end();
 
   std::string_view bytes_;

@@ -81,14 +81,21 @@ class ObjReader {
   }
 
   void face() {
-    auto word = cursor_.word();
-    if (word.empty()) throw cursor_.error("a face without corners");
-    for (; !word.empty(); word = cursor_.word()) mesh_.corners.push_back(corner(word));
+    std::size_t corners = 0;
+    for (;; ++corners) {
+      if (const auto number = cursor_.plain_integer()) {
+        mesh_.corners.push_back(index(*number));
+        continue;
+      }
+      const std::string_view word = cursor_.word();
+      if (word.empty()) break;
+      mesh_.corners.push_back(corner(word));
+    }
+    if (corners == 0) throw cursor_.error("a face without corners");
     mesh_.end_polygon();
   }
 
-  // v, v/t, v//n or v/t/n. Positive numbers may name a later vertex, negative ones count
-  // back from here.
+  // v, v/t, v//n or v/t/n.
   std::int32_t corner(std::string_view word) {
     const LeadingDigits lead = leading_digits(cursor_.since_last());
     std::size_t slash = lead.length;
@@ -97,12 +104,15 @@ class ObjReader {
       slash = std::min(word.find('/'), word.size());
       number = parse_integer(word.substr(0, slash));
     }
-    if (!number || !are_slots(word.substr(slash))) {
-      throw cursor_.error(in_quotes(word) + " is not v, v/t, v//n or v/t/n in integers of 64 bits");
-    }
-    const std::int64_t index = *number > 0 ? *number - 1 : mesh_.vertex_count() + *number;
+    if (number && are_slots(word.substr(slash))) return index(*number);
+    throw cursor_.error(in_quotes(word) + " is not v, v/t, v//n or v/t/n in integers of 64 bits");
+  }
+
+  // Positive numbers may name a later vertex, negative ones count back from here.
+  std::int32_t index(std::int64_t number) {
+    const std::int64_t index = number > 0 ? number - 1 : mesh_.vertex_count() + number;
     constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
-    if (*number == 0 || index < 0 || index > kMost) throw cursor_.error(out_of_range(*number));
+    if (number == 0 || index < 0 || index > kMost) throw cursor_.error(out_of_range(number));
     if (index > largest_index_) {
       largest_index_ = index;
       largest_offset_ = cursor_.last_offset();

@@ -73,7 +73,8 @@ std::vector<fs::path> write_examples(const fs::path& folder) {
   const TriangleMesh mesh = make_ellipsoid(1.0, 0.5, 2.0, 316);
   std::vector<fs::path> files;
   fs::create_directory(folder);
-  for (const char* const name : {"ellipsoid.off", "ellipsoid.obj", "ellipsoid.ply"}) {
+  for (const char* const name :
+       {"ellipsoid.off", "ellipsoid.obj", "ellipsoid.ply", "ellipsoid.stl", "ellipsoid.glb"}) {
     files.push_back(folder / name);
     write_mesh(mesh, files.back().string(), true);
   }

@@ -41,6 +41,12 @@ struct ScaledLengths {
   int exponent = 0;
 };
 
+double length_of(const Eigen::RowVector3d& edge) {
+  constexpr double kSmall = 1e-140;  // below it, squares have lost digits
+  const double length = edge.norm();
+  return length > kSmall ? length : edge.stableNorm();
+}
+
 ScaledLengths edge_lengths(const TriangleMesh& mesh) {
   double largest = 0.0;  // of vertices in use: one that is not must not set the unit
   for (const std::int32_t v : mesh.faces.reshaped()) {
@@ -52,8 +58,9 @@ ScaledLengths edge_lengths(const TriangleMesh& mesh) {
       mesh.vertices.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
   for (Index f = 0; f < mesh.faces.rows(); ++f) {
     for (int c = 0; c < 3; ++c) {
-      scaled.lengths(f, c) =
-          (points.row(mesh.faces(f, (c + 1) % 3)) - points.row(mesh.faces(f, (c + 2) % 3))).norm();
+      const Eigen::RowVector3d edge =
+          points.row(mesh.faces(f, (c + 1) % 3)) - points.row(mesh.faces(f, (c + 2) % 3));
+      scaled.lengths(f, c) = length_of(edge);
     }
   }
   return scaled;
@@ -196,7 +203,9 @@ Surface make_surface(const TriangleMesh& mesh, double mollification) {
   const double per_unit = 1.0 / unit_of({mesh.vertices.data(), at(mesh.vertices.size())});
   const auto has_area = [&](Index f) {
     const auto corner = [&](Index c) { return mesh.vertices.row(mesh.faces(f, c)).data(); };
-    return !has_no_area(corner(0), corner(1), corner(2), per_unit);
+    // All lengths are 0 where a part is beyond the range of a double smaller than the whole.
+    return scaled.lengths.row(f).maxCoeff() > 0.0 &&
+           !has_no_area(corner(0), corner(1), corner(2), per_unit);
   };
   return make_scaled(sound_faces(mesh.faces, scaled.lengths, has_area), scaled.exponent,
                      mesh.vertices.rows(), mollification);

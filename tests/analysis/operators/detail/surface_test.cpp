@@ -41,14 +41,27 @@ TEST(MakeSurface, RaisesLengthsOfTheComponentThatNeedsItOnly) {
   }
 }
 
-TEST(MakeSurface, GivesEachComponentItsOwnUnit) {
+// Two equal triangles, each a component, whose sizes are powers of two.
+Surface surface_of_two(int first_exponent, int second_exponent) {
   TriangleMesh mesh = make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}},
                                 {{0, 1, 2}, {3, 4, 5}});
-  mesh.vertices.bottomRows(3) *= 0x1p-60;
-  mesh.vertices.topRows(3) *= 0x1p300;
-  const Surface surface = make_surface(mesh, 1e-5);
-  EXPECT_EQ(surface.scales[0].exponent - surface.scales[1].exponent, 360);
-  EXPECT_EQ(surface.faces[0].length, surface.faces[1].length);
+  mesh.vertices.topRows(3) *= std::ldexp(1.0, first_exponent);
+  mesh.vertices.bottomRows(3) *= std::ldexp(1.0, second_exponent);
+  return make_surface(mesh, 1e-5);
+}
+
+TEST(MakeSurface, GivesEachComponentItsOwnUnit) {
+  for (const auto& [first, second] : {std::pair{300, -60}, std::pair{500, -500}}) {
+    const Surface surface = surface_of_two(first, second);
+    EXPECT_EQ(surface.scales[0].exponent - surface.scales[1].exponent, first - second);
+    EXPECT_EQ(surface.faces[0].length, surface.faces[1].length);
+  }
+}
+
+TEST(MakeSurface, LeavesOutAComponentThatVanishesBesideTheOthers) {
+  const Surface surface = surface_of_two(990, -100);
+  EXPECT_EQ(surface.left_out, 1);
+  EXPECT_EQ(surface.scales.size(), 1U);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "timbre/analysis/spectrum/detail/simd.h"
 #include "timbre/analysis/spectrum/detail/tile_kernels.h"
 
 // The kernels as templates over the number of doubles in a vector register. Only the files that
@@ -8,21 +9,6 @@
 
 namespace timbre::detail {
 namespace {
-
-template <int Lanes>
-struct Simd;
-template <>
-struct Simd<2> {
-  typedef double Vector __attribute__((vector_size(16), aligned(8), may_alias));
-};
-template <>
-struct Simd<4> {
-  typedef double Vector __attribute__((vector_size(32), aligned(8), may_alias));
-};
-template <>
-struct Simd<8> {
-  typedef double Vector __attribute__((vector_size(64), aligned(8), may_alias));
-};
 
 template <int Lanes>
 struct Kernels {

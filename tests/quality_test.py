@@ -37,13 +37,13 @@ with tempfile.TemporaryDirectory() as folder:
     for channel, bound in (("dna_log", 0.84), ("dna_weyl", 0.79), ("dna_raw", 0.95)):
         judge(f"mAP of {channel}", run("eval", "retrieval", database, "--channel", channel)["map"],
               at_least=bound)
-    maps = run("eval", "match", shapes, "-n", "5")
+    maps = run("eval", "match", shapes, "-n", "5", "--samples", "600")
     judge("maps found", maps["found"], at_least=1.0)
     judge("mean error of maps", maps["mean_error"], at_most=2.0)
     judge("maps with sides exchanged", maps["flipped"], at_most=0.0)
-    plain = run("eval", "match", shapes, "-n", "5", "--method", "functional", "--samples", "500")
+    plain = run("eval", "match", shapes, "-n", "5", "--method", "functional", "--samples", "300")
     judge("sides exchanged by descriptors alone", plain["flipped"], at_least=0.2)
-    mirrors = run("eval", "match", shapes, "-n", "2", "--kind", "sym")
+    mirrors = run("eval", "match", shapes, "-n", "2", "--kind", "sym", "--samples", "600")
     judge("symmetries found", mirrors["mesh_rate"], at_least=1.0)
     judge("mean error of symmetries", mirrors["mean_error"], at_most=1.3)
 sys.exit(bool(failures))

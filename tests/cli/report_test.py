@@ -107,8 +107,8 @@ class WholePage(Report):
         run_timbre("db", "add", cls.db, *sorted(map(str, cls.set.glob("*.ply"))), "--labels",
                    str(cls.set / "labels.txt"))
         for kind, number in (("map", "2"), ("sym", "1")):
-            run_timbre("eval", "match", str(cls.set), "--kind", kind, "-n", number, "--geodesic", "graph", "-q", "-o",
-                       str(folder / f"{kind}.jsonl"), "--save-maps", str(folder / kind))
+            run_timbre("eval", "match", str(cls.set), "--kind", kind, "-n", number, "--geodesic", "graph",
+                       "--samples", "500", "-q", "-o", str(folder / f"{kind}.jsonl"), "--save-maps", str(folder / kind))
         cls.logs = ["--matches", str(folder / "map.jsonl"), "--maps", str(folder / "map"), "--symmetries",
                     str(folder / "sym.jsonl"), "--symmetry-maps", str(folder / "sym")]
 

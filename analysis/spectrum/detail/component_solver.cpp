@@ -1,14 +1,13 @@
 #include "timbre/analysis/spectrum/detail/component_solver.h"
 
-#include <Spectra/SymGEigsShiftSolver.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <random>
-#include <stdexcept>
+#include <utility>
+
+#include "timbre/analysis/spectrum/detail/spectrum_slicing.h"
 
 namespace timbre::detail {
 namespace {
@@ -17,9 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A shift below the spectrum, in units of it: Weyl's density is one pair per 4 pi at
-// unit area. W - s M is then positive definite, and far enough from singular.
-constexpr double kShift = -0.01 * 4.0 * std::numbers::pi;
 constexpr Index kDenseSize = 200;
 
 SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32_t>& rows,
@@ -34,100 +30,6 @@ SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32
   }
   part.setFromTriplets(entries.begin(), entries.end());
   return part;
-}
-
-// (W - s M)^-1 for Spectra, on the M-orthogonal complement of the known pairs.
-class ShiftInverse {
- public:
-  using Scalar = double;
-
-  ShiftInverse(const Component& component, const MatrixXd* known,
-               const ComponentSolveOptions& options)
-      : size_(component.size()),
-        factor_(SparseMatrix(component.stiffness - kShift * component.mass), options.backend),
-        on_solve_(options.on_solve) {
-    if (known == nullptr) return;
-    known_ = *known;
-    mass_known_ = component.mass * known_;
-  }
-
-  [[nodiscard]] Index rows() const { return size_; }
-  [[nodiscard]] Index cols() const { return size_; }
-  void set_shift(double) {}  // factorised once, for kShift
-
-  void perform_op(const double* x, double* y) const {
-    factor_.solve(x, y);
-    Eigen::Map<VectorXd> out(y, size_);
-    if (known_.cols() > 0) out -= known_ * (mass_known_.transpose() * out);
-    if (on_solve_) on_solve_();
-  }
-
- private:
-  Index size_;
-  mutable Factorization factor_;
-  MatrixXd known_, mass_known_;
-  std::function<void()> on_solve_;
-};
-
-class MassProduct {
- public:
-  using Scalar = double;
-  explicit MassProduct(const Component& component)
-      : mass_(component.mass),
-        lumped_(component.diagonal_mass ? component.lumped_mass : VectorXd()) {}
-  [[nodiscard]] Index rows() const { return mass_.rows(); }
-  [[nodiscard]] Index cols() const { return mass_.cols(); }
-  void perform_op(const double* x, double* y) const {
-    const Eigen::Map<const VectorXd> in(x, rows());
-    Eigen::Map<VectorXd> out(y, rows());
-    if (lumped_.size() > 0) {
-      out = lumped_.cwiseProduct(in);
-    } else {
-      out = mass_ * in;
-    }
-  }
-
- private:
-  const SparseMatrix& mass_;
-  VectorXd lumped_;
-};
-
-VectorXd start_vector(Index n, int seed) {
-  std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
-  VectorXd start(n);
-  for (double& x : start) x = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
-  return start;
-}
-
-struct Pairs {
-  VectorXd values;
-  MatrixXd vectors;
-};
-
-bool run_lanczos(const Component& component, Index count, const MatrixXd* known,
-                 const ComponentSolveOptions& options, Pairs& found) {
-  const Index n = component.size();
-  ShiftInverse inverse(component, known, options);
-  MassProduct mass(component);
-  const Index attempt = options.attempt;
-  const Index space = std::min(n, (2 + attempt) * count + 20 * (1 + attempt));
-  using Solver =
-      Spectra::SymGEigsShiftSolver<ShiftInverse, MassProduct, Spectra::GEigsMode::ShiftInvert>;
-  try {
-    Solver solver(inverse, mass, count, space, kShift);
-    const VectorXd start = start_vector(n, 2 * options.attempt + (known != nullptr ? 1 : 0));
-    solver.init(start.data());
-    constexpr Index kRestarts = 300;
-    if (solver.compute(Spectra::SortRule::LargestMagn, kRestarts, 1e-10,
-                       Spectra::SortRule::SmallestAlge) < count) {
-      return false;
-    }
-    found.values = solver.eigenvalues();
-    found.vectors = solver.eigenvectors();
-  } catch (const std::runtime_error&) {
-    return false;  // Spectra's own small eigenproblem failed
-  }
-  return true;
 }
 
 // With a diagonal mass an ordinary eigenproblem after scaling by its square root.
@@ -192,37 +94,24 @@ std::vector<Component> split_into_components(const Operator& op) {
   return components;
 }
 
-bool solve_lowest(Component& component, Index count, const ComponentSolveOptions& options) {
+void solve_lowest(Component& component, Index count, const ComponentSolveOptions& options) {
   const Index n = component.size();
   count = std::min(count, n);
   if (n <= kDenseSize || count > n / 4) {
-    if (options.on_solve) options.on_solve();
+    if (options.on_solve) options.on_solve(1);
     solve_dense(component, count);
-    if (options.on_solve) options.on_solve();
+    if (options.on_solve) options.on_solve(1);
   } else {
-    Pairs found;
-    if (!run_lanczos(component, count, nullptr, options, found)) return false;
+    SlicedPairs found =
+        lowest_pairs(component.stiffness, component.mass, nullptr,
+                     {.count = count,
+                      .seed = 1 + 1000 * static_cast<std::uint64_t>(options.attempt),
+                      .on_solve = options.on_solve});
     component.values = std::move(found.values);
     component.vectors = std::move(found.vectors);
   }
   sort_pairs(component);
   put_exact_zero(component);
-  return true;
-}
-
-bool add_missing(Component& component, Index missing, const ComponentSolveOptions& options) {
-  const Index known = component.values.size();
-  missing = std::min(missing, component.size() - known - 1);
-  if (missing < 1) return false;
-  Pairs found;
-  if (!run_lanczos(component, missing, &component.vectors, options, found)) return false;
-  component.values.conservativeResize(known + missing);
-  component.vectors.conservativeResize(Eigen::NoChange, known + missing);
-  component.values.tail(missing) = found.values;
-  component.vectors.rightCols(missing) = found.vectors;
-  sort_pairs(component);
-  put_exact_zero(component);
-  return true;
 }
 
 VectorXd relative_residuals(const Component& component) {

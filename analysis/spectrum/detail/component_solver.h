@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "timbre/analysis/operators/operator.h"
-#include "timbre/analysis/spectrum/factorization.h"
 
 namespace timbre::detail {
 
@@ -31,22 +30,14 @@ struct Component {
 [[nodiscard]] std::vector<Component> split_into_components(const Operator& op);
 
 struct ComponentSolveOptions {
-  FactorizationBackend backend = FactorizationBackend::automatic;
-  int attempt = 0;                 ///< higher: larger Krylov space, another start vector
-  std::function<void()> on_solve;  ///< after each solve with the factor; may throw
+  int attempt = 0;                    ///< another start for each
+  std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
 };
 
-/// Replaces the pairs by the lowest `count` (capped at n). Dense for a small component
-/// or a large share of its pairs, else shift-invert Lanczos.
-/// @return false when the iteration did not converge
-[[nodiscard]] bool solve_lowest(Component& component, Eigen::Index count,
-                                const ComponentSolveOptions& options);
-
-/// Adds the `missing` lowest pairs among those M-orthogonal to the ones known: finds the
-/// further copies of a multiple eigenvalue, which one start vector cannot see.
-/// @return false when the iteration did not converge
-[[nodiscard]] bool add_missing(Component& component, Eigen::Index missing,
-                               const ComponentSolveOptions& options);
+/// Replaces the pairs by the lowest `count` (capped at n), or some more. Dense for a small
+/// component or a large share of its pairs, else band by band.
+/// @throws Error  not_converged
+void solve_lowest(Component& component, Eigen::Index count, const ComponentSolveOptions& options);
 
 /// Relative residual of each pair, in the norm of the inverse lumped mass.
 [[nodiscard]] Eigen::VectorXd relative_residuals(const Component& component);

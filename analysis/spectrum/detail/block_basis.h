@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "timbre/analysis/spectrum/detail/aligned_array.h"
+#include "timbre/analysis/spectrum/detail/block_kernels.h"
+#include "timbre/analysis/spectrum/detail/pencil.h"
+
+namespace timbre::detail {
+
+/// A square of the block width; row i, column j belongs to columns i and j of two blocks.
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// M of a pencil as it acts on blocks.
+class BlockMass {
+ public:
+  /// @param pencil  must outlive this
+  explicit BlockMass(const Pencil& pencil);
+
+  [[nodiscard]] int size() const { return static_cast<int>(diagonal_.size()); }
+  [[nodiscard]] double diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
+  /// Z = M U; both size x width, row-major.
+  void multiply(const double* U, int width, double* Z) const;
+
+ private:
+  const Pencil* pencil_;
+  std::vector<double> diagonal_;
+  bool is_diagonal_ = true;
+};
+
+/// What CholeskyQR found. R is upper triangular.
+struct BlockFactor {
+  Square R;
+  double smallest_pivot = 0.0;  ///< beside the diagonal of the Gram matrix; small: nearly dependent
+};
+
+/// Blocks of vectors, size x width each, and the products that a block Krylov method makes of
+/// them. Sums run over fixed chunks of rows in a fixed order.
+class BlockBasis {
+ public:
+  /// @param width  8 or 16
+  BlockBasis(int size, int width, InstructionSet instructions);
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int blocks() const { return used_; }
+  [[nodiscard]] std::size_t numbers() const;  ///< in a block
+  [[nodiscard]] AlignedArray new_block() const { return AlignedArray(numbers()); }
+  [[nodiscard]] const double* block(int j) const { return blocks_[at(j)].data(); }
+
+  /// Takes a block over and leaves another in its place, with any content.
+  void push_back(AlignedArray& block);
+  void clear() { used_ = 0; }  ///< keeps the memory
+
+  /// H = V^T Z for the blocks [first, blocks()): one square for each, below each other.
+  [[nodiscard]] Square products(const double* Z, int first = 0) const;
+  /// U -= V H, with H as `products` gives it.
+  void subtract(const Square& H, double* U, int first = 0) const;
+
+  /// A^T B of two blocks.
+  [[nodiscard]] Square gram(const double* A, const double* B) const;
+  /// U -= V H for blocks of any owner.
+  void subtract(const double* V, const Square& H, double* U) const;
+  /// U := U T and Z := Z T.
+  void multiply_right(const Square& T, double* U, double* Z) const;
+  /// Cholesky QR: given Z = M U, makes U R^-1 of U and Z R^-1 of Z, for U^T M U = R^T R.
+  [[nodiscard]] BlockFactor orthonormalise(double* U, double* Z) const;
+
+ private:
+  static std::size_t at(int j) { return static_cast<std::size_t>(j); }
+  template <typename Visit>
+  void for_each_chunk(Visit visit) const;
+
+  int size_;
+  int width_;
+  const BlockKernels& kernels_;
+  std::vector<AlignedArray> blocks_;
+  int used_ = 0;
+};
+
+}  // namespace timbre::detail

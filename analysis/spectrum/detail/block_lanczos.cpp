@@ -1,0 +1,217 @@
+#include "timbre/analysis/spectrum/detail/block_lanczos.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "timbre/analysis/core/matrix_product.h"
+
+namespace timbre::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+BlockLanczos::BlockLanczos(const SupernodalLdlt& ldlt, LanczosOptions options)
+    : ldlt_(ldlt),
+      options_(std::move(options)),
+      mass_(ldlt.pencil()),
+      basis_(mass_.size(), options_.width, best_instruction_set()),
+      locked_(mass_.size(), options_.width, best_instruction_set()),
+      U_(basis_.new_block()),
+      Z_(basis_.new_block()),
+      projected_(options_.width) {}
+
+void BlockLanczos::solve(AlignedArray& X) {
+  ldlt_.solve_in_factor_order(X.data(), options_.width);
+  if (options_.on_solve) options_.on_solve(options_.width);
+}
+
+// One step of inverse iteration on random vectors that have a share of every unknown.
+void BlockLanczos::start() {
+  basis_.clear();
+  projected_.clear();
+  std::mt19937_64 random(options_.seed++);
+  for (int i = 0; i < mass_.size(); ++i) {
+    const double scale = std::sqrt(std::abs(mass_.diagonal(i)));
+    double* const row = U_.data() + at(i) * at(options_.width);
+    for (int c = 0; c < options_.width; ++c) {
+      row[c] = scale * (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
+    }
+  }
+  solve(U_);
+  for (int pass = 0; pass < 2; ++pass) {
+    mass_.multiply(U_.data(), options_.width, Z_.data());
+    locked_.subtract(locked_.products(Z_.data()), U_.data());
+    mass_.multiply(U_.data(), options_.width, Z_.data());
+    (void)basis_.orthonormalise(U_.data(), Z_.data());
+  }
+  basis_.push_back(U_);
+}
+
+// Z holds M V_j. What the recurrence knows is taken off first, so that one pass over all blocks is
+// enough: it only removes rounding.
+void BlockLanczos::step() {
+  constexpr int kPeriod = 3;
+  constexpr int kPasses = 3;
+  constexpr double kMostDrift = 1e-5;
+  const int P = options_.width;
+  const int j = basis_.blocks() - 1;
+  std::copy_n(Z_.data(), basis_.numbers(), U_.data());
+  solve(U_);
+  if (j > 0) basis_.subtract(basis_.block(j - 1), last_factor_.transpose(), U_.data());
+  Square diagonal = basis_.gram(Z_.data(), U_.data());
+  basis_.subtract(basis_.block(j), diagonal, U_.data());
+
+  const bool is_skipped =
+      j >= 4 && j % kPeriod == kPeriod - 1 && locked_.blocks() == 0 && !full_passes_only_;
+  const int first = is_skipped ? j - 1 : 0;
+  Square coupling = Square::Identity(P, P);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    mass_.multiply(U_.data(), P, Z_.data());
+    if (locked_.blocks() > 0) locked_.subtract(locked_.products(Z_.data()), U_.data());
+    const Square H = basis_.products(Z_.data(), first);
+    basis_.subtract(H, U_.data(), first);
+    if (pass == 0) diagonal += H.bottomRows(P);
+    mass_.multiply(U_.data(), P, Z_.data());
+    const BlockFactor factor = basis_.orthonormalise(U_.data(), Z_.data());
+    coupling = factor.R * coupling;
+    const double removed = H.cwiseAbs().maxCoeff();
+    const double left = factor.R.diagonal().maxCoeff();
+    if (pass == 0 && first == 0 && j >= 4) drift_ = std::max(drift_, removed / left);
+    if (factor.smallest_pivot > 1e-6 && removed < 1e3 * left) break;
+  }
+  if (drift_ > kMostDrift) full_passes_only_ = true;
+  projected_.append(last_factor_, Square(0.5 * (diagonal + diagonal.transpose())));
+  last_factor_ = coupling;
+  basis_.push_back(U_);
+}
+
+bool BlockLanczos::try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing) {
+  small_ = timbre::detail::solve(projected_);
+  const auto m = small_.values.size();
+  const MatrixXd tails = last_factor_ * small_.vectors.bottomRows(options_.width);
+  std::vector<std::pair<double, int>> below;
+  std::vector<std::pair<double, int>> above;
+  std::vector<double> errors(static_cast<std::size_t>(m));
+  for (Index i = 0; i < m; ++i) {
+    const double theta = small_.values[i];
+    // The residual of the purified vector in the norm of the inverse mass.
+    errors[static_cast<std::size_t>(i)] = tails.col(i).norm() / (theta * theta);
+    (theta < 0.0 ? below : above).emplace_back(shift + 1.0 / theta, static_cast<int>(i));
+  }
+  std::sort(below.rbegin(), below.rend());
+  std::sort(above.begin(), above.end());
+  const auto has_converged = [&](const std::pair<double, int>& pair) {
+    return errors[at(pair.second)] <=
+           options_.tolerance * (std::abs(pair.first) + std::max(goal.scale, std::abs(shift)));
+  };
+  const auto end_below = std::find_if_not(below.begin(), below.end(), has_converged);
+  const auto at_cut =
+      std::find_if(below.begin(), end_below, [&](const auto& p) { return p.first <= goal.cut; });
+  const auto end_above = std::find_if_not(above.begin(), above.end(), has_converged);
+
+  found = {};
+  found.left = static_cast<int>(at_cut - below.begin());
+  found.right = static_cast<int>(end_above - above.begin());
+  found.sees_the_cut = at_cut != end_below || end_below == below.end();
+  chosen_.clear();
+  for (auto pair = at_cut; pair != below.begin();) chosen_.push_back((--pair)->second);
+  for (auto pair = above.begin(); pair != end_above; ++pair) chosen_.push_back(pair->second);
+  for (const int i : chosen_) {
+    found.values.push_back(shift + 1.0 / small_.values[i]);
+    found.errors.push_back(errors[at(i)]);
+  }
+  missing = std::max(goal.left - found.left, goal.right - found.right);
+  const bool is_beyond_hope = found.sees_the_cut && found.left < goal.left;
+  return missing <= 0 || (is_beyond_hope && found.right >= goal.right);
+}
+
+BandPairs BlockLanczos::run(double shift, const BandGoal& goal) {
+  const int P = options_.width;
+  full_passes_only_ = false;
+  start();
+  // Fitted on closed surfaces; what a run needed guides the next one.
+  const double usual = 5.5 * P + 30.0 + 3.2 * std::max(goal.left, goal.right);
+  int next_test = std::max(2, static_cast<int>(share_ * usual / P));
+  BandPairs found;
+  for (int tests = 0;;) {
+    step();
+    const int steps = basis_.blocks() - 1;
+    const bool is_last = steps >= options_.most_blocks;
+    if (steps < next_test && !is_last) continue;
+    ++tests;
+    int missing = 0;
+    if (!try_goal(shift, goal, found, missing) && !is_last) {
+      next_test = steps + 1 + static_cast<int>(1.8 * missing / P);
+      continue;
+    }
+    share_ = std::clamp(share_ * (tests > 1 ? 1.02 : 0.97), 0.6, 2.0);
+    return found;
+  }
+}
+
+// Of the basis and the block after it: the part beyond the basis is one more application of the
+// inverse, which costs nothing here (purification, Ericsson and Ruhe 1980).
+MatrixXd BlockLanczos::coefficients(int first, int count) const {
+  const int P = options_.width;
+  const Index m = small_.values.size();
+  MatrixXd C(m + P, count);
+  for (int k = 0; k < count; ++k) {
+    const int i = chosen_[at(first + k)];
+    C.col(k).head(m) = small_.vectors.col(i);
+    C.col(k).tail(P) = last_factor_ * small_.vectors.col(i).tail(P) / small_.values[i];
+    C.col(k) /= C.col(k).norm();
+  }
+  return C;
+}
+
+// Calls `write(row, vectors)` for all rows, some at a time; vectors are rows x count.
+template <typename Write>
+void BlockLanczos::for_each_rows(const MatrixXd& coefficients, Write write) const {
+  constexpr int kRows = 256;
+  const int P = options_.width;
+  MatrixXd packed(coefficients.rows(), kRows);
+  for (int row = 0; row < mass_.size(); row += kRows) {
+    const int rows = std::min(kRows, mass_.size() - row);
+    for (int j = 0; j < basis_.blocks(); ++j) {
+      const double* const block = basis_.block(j) + at(row) * at(P);
+      packed.block(j * P, 0, P, rows) = Eigen::Map<const MatrixXd>(block, P, rows);
+    }
+    write(row, product_at_b(packed.leftCols(rows), coefficients));
+  }
+}
+
+void BlockLanczos::write_vectors(int first, int count, double* X, std::int64_t stride) const {
+  if (count == 0) return;
+  const std::vector<int>& order = ldlt_.symbolic().order;
+  for_each_rows(coefficients(first, count), [&](int row, const MatrixXd& vectors) {
+    for (Index k = 0; k < vectors.cols(); ++k) {
+      double* const column = X + k * stride;
+      for (Index i = 0; i < vectors.rows(); ++i) {
+        column[order[at(row + static_cast<int>(i))]] = vectors(i, k);
+      }
+    }
+  });
+}
+
+void BlockLanczos::lock(int first, int count) {
+  const int P = options_.width;
+  for (int done = 0; done < count; done += P) {
+    const int some = std::min(P, count - done);
+    AlignedArray block = basis_.new_block();
+    std::fill_n(block.data(), basis_.numbers(), 0.0);
+    for_each_rows(coefficients(first + done, some), [&](int row, const MatrixXd& vectors) {
+      Eigen::Map<MatrixXd> rows(block.data() + at(row) * at(P), P, vectors.rows());
+      rows.topRows(some) = vectors.transpose();
+    });
+    locked_.push_back(block);
+  }
+}
+
+}  // namespace timbre::detail

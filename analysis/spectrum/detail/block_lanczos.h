@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "timbre/analysis/spectrum/detail/banded_eigenproblem.h"
+#include "timbre/analysis/spectrum/detail/block_basis.h"
+#include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
+
+namespace timbre::detail {
+
+struct LanczosOptions {
+  int width = 8;  ///< vectors in a block, 8 or 16: more is faster to solve, but a larger basis
+  double tolerance = 1e-8;            ///< of a pair, beside |lambda| + scale
+  std::uint64_t seed = 1;             ///< of the start
+  int most_blocks = 64;               ///< of the basis
+  std::function<void(int)> on_solve;  ///< after so many solves; may throw
+};
+
+/// What is wanted of a run.
+struct BandGoal {
+  double cut = 0.0;    ///< pairs at or below are known
+  int left = 0;        ///< how many lie between the cut and the shift
+  int right = 0;       ///< how many above the shift are wanted, at least
+  double scale = 0.0;  ///< of eigenvalues: errors are measured beside |lambda| + scale
+};
+
+/// Converged pairs around a shift: an interval without a gap, as far as a Krylov space can see.
+struct BandPairs {
+  std::vector<double> values;  ///< ascending
+  std::vector<double> errors;  ///< bounds of |lambda - exact|
+  int left = 0;                ///< below the shift
+  int right = 0;
+  bool sees_the_cut = false;  ///< a pair at or below the cut has converged, or none are left to see
+};
+
+/// Shift-invert Lanczos with blocks in the M inner product (Grimes, Lewis and Simon 1994), one
+/// shift at a time. Vectors are in the order of the factor. Each step is orthogonalised against
+/// two of three blocks' predecessors in full: one skipped step at a time costs no digit.
+class BlockLanczos {
+ public:
+  /// @param ldlt  factorised at the shift of the next run; must outlive this
+  BlockLanczos(const SupernodalLdlt& ldlt, LanczosOptions options);
+
+  /// Runs until the goal is reached, or `most_blocks`.
+  /// @param shift  that of the factor
+  [[nodiscard]] BandPairs run(double shift, const BandGoal& goal);
+
+  /// Keeps pairs [first, first + count) of the last run out of the next ones, so that these find
+  /// further copies of multiple eigenvalues.
+  void lock(int first, int count);
+  void unlock() { locked_.clear(); }
+
+  /// Vectors of pairs [first, first + count) of the last run, M-orthonormal, to columns of X in
+  /// the caller's order.
+  void write_vectors(int first, int count, double* X, std::int64_t stride) const;
+
+  /// The largest loss of orthogonality that a full pass has met after a skipped one.
+  [[nodiscard]] double drift() const { return drift_; }
+
+ private:
+  void start();
+  void step();
+  void orthogonalise(bool all);
+  void solve(AlignedArray& X);
+  [[nodiscard]] bool try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing);
+  [[nodiscard]] Eigen::MatrixXd coefficients(int first, int count) const;
+  template <typename Write>
+  void for_each_rows(const Eigen::MatrixXd& coefficients, Write write) const;
+
+  const SupernodalLdlt& ldlt_;
+  LanczosOptions options_;
+  BlockMass mass_;
+  BlockBasis basis_;
+  BlockBasis locked_;
+  AlignedArray U_, Z_;  // the next block, and M times it
+  BandedMatrix projected_;
+  Square last_factor_;  // R of the last block
+  BandedEigenpairs small_;
+  std::vector<int> chosen_;  // of small_, in the order of the pairs
+  bool full_passes_only_ = false;
+  double drift_ = 0.0;
+  double share_ = 1.0;  // of the usual size of a basis, learnt from run to run
+};
+
+}  // namespace timbre::detail

@@ -1,0 +1,225 @@
+#include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/threads.h"
+#include "timbre/analysis/spectrum/detail/aligned_array.h"
+#include "timbre/analysis/spectrum/detail/factor_check.h"
+#include "timbre/analysis/spectrum/detail/front.h"
+#include "timbre/analysis/spectrum/detail/panels.h"
+#include "timbre/analysis/spectrum/detail/traversal.h"
+
+namespace timbre::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// A pivot this small beside its row has lost most of its digits.
+constexpr double kSmallPivot = 1e-13;
+// An error of the factor as large as this share of the smallest eigenvalue leaves the count in
+// doubt; a factor of 100 below 1, since the random vectors see only a part of it.
+constexpr double kDoubtfulResidual = 1e-2;
+
+// Row of each entry of the pencil in the front of its column.
+std::vector<int> entry_rows(const SymbolicFactor& symbolic, const Pencil& pencil) {
+  std::vector<int> rows(static_cast<std::size_t>(pencil.entries()));
+  for (int s = 0; s < symbolic.supernodes(); ++s) {
+    const int begin = symbolic.first_column[s];
+    const int end = symbolic.first_column[s + 1];
+    const auto below = symbolic.rows.begin() + symbolic.first_row[s];
+    for (int j = begin; j < end; ++j) {
+      auto at = below;
+      for (std::int64_t e = pencil.start[j]; e < pencil.start[j + 1]; ++e) {
+        const int i = pencil.row[e];
+        if (i < end) {
+          rows[e] = i - begin;
+          continue;
+        }
+        while (*at < i) ++at;
+        rows[e] = padded(end - begin) + static_cast<int>(at - below);
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+struct SupernodalLdlt::Impl {
+  Impl(const Pencil& given, const Points* positions, const LdltOptions& chosen)
+      : options(chosen),
+        symbolic(analyse(given, compute_ordering(adjacency(given), positions, chosen.ordering))),
+        pencil(permuted(given, symbolic.order)),
+        layout(lay_out_panels(symbolic)),
+        threads(chosen.threads > 0 ? chosen.threads : hardware_threads()),
+        plan(plan_traversal(symbolic, threads)),
+        entry_row(entry_rows(symbolic, pencil)),
+        kernels(tile_kernels(chosen.instructions)) {}
+
+  [[nodiscard]] std::int64_t bytes() const {
+    std::int64_t values = layout.values + 2 * symbolic.size + plan.top.values;
+    for (const Sequence& subtree : plan.subtrees) values += subtree.values;
+    return static_cast<std::int64_t>(sizeof(double)) * values +
+           threads * FrontFactorizer::workspace_bytes(symbolic);
+  }
+
+  void allocate() {
+    if (factor.size() > 0 || symbolic.size == 0) return;
+    const auto n = static_cast<std::size_t>(symbolic.size);
+    factor = AlignedArray(static_cast<std::size_t>(layout.values));
+    d.resize(n);
+    e.resize(n);
+    order.resize(n);
+    counts.resize(symbolic.parent.size());
+    for (const Sequence& subtree : plan.subtrees) {
+      arenas.emplace_back(static_cast<std::size_t>(subtree.values));
+    }
+    arenas.emplace_back(static_cast<std::size_t>(plan.top.values));
+  }
+
+  double* update_of(int s) {
+    const int q = plan.sequence_of[s];
+    return (q == -1 ? arenas.back() : arenas[q]).data() + plan.place[s];
+  }
+
+  void run(const FactorInput& input, const Sequence& sequence, FrontFactorizer& fronts) {
+    std::vector<Child> children;
+    for (const int s : sequence.supernodes) {
+      children.clear();
+      for (const int c : plan.children_of(s)) children.push_back({c, update_of(c)});
+      fronts.factorize(input, s, children, update_of(s),
+                       {factor.data(), d.data(), e.data(), order.data(), counts.data()});
+    }
+  }
+
+  PivotCounts factorize(double shift) {
+    allocate();
+    const std::vector<double> scale = row_scales(pencil, shift);
+    const FactorInput input{symbolic, layout, pencil, entry_row, scale, kernels, shift};
+    parallel_for(std::ssize(plan.subtrees), threads, [&](std::int64_t i) {
+      FrontFactorizer fronts(symbolic);
+      run(input, plan.subtrees[i], fronts);
+    });
+    FrontFactorizer fronts(symbolic);
+    run(input, plan.top, fronts);
+    PivotCounts all;
+    for (const PivotCounts& one : counts) all.add(one);
+    factorized = true;
+    return all;
+  }
+
+  [[nodiscard]] Panel panel(int s, int p) const {
+    const PanelPlace& place = layout.panels[p];
+    const double* inverse = factor.data() + place.values;
+    return {.inverse = inverse,
+            .below = inverse + PanelLayout::inverse_values(place.width),
+            .order = order.data() + place.column,
+            .d = d.data() + place.column,
+            .e = e.data() + place.column,
+            .column = place.column,
+            .width = place.width,
+            .rest = symbolic.first_column[s + 1] - place.column - place.width,
+            .listed = symbolic.rows_below(s),
+            .rows = symbolic.rows.data() + symbolic.first_row[s]};
+  }
+
+  void solve(double* X, int width) const {
+    const int last = symbolic.supernodes() - 1;
+    for (int s = 0; s <= last; ++s) {
+      for (int p = layout.first_panel[s]; p < layout.first_panel[s + 1]; ++p) {
+        kernels.forward(panel(s, p), X, width);
+      }
+    }
+    for (int s = last; s >= 0; --s) {
+      for (int p = layout.first_panel[s + 1] - 1; p >= layout.first_panel[s]; --p) {
+        kernels.backward(panel(s, p), X, width);
+      }
+    }
+  }
+
+  LdltOptions options;
+  SymbolicFactor symbolic;
+  Pencil pencil;
+  PanelLayout layout;
+  int threads;
+  Traversal plan;
+  std::vector<int> entry_row;
+  const TileKernels& kernels;
+
+  bool factorized = false;
+  AlignedArray factor;
+  std::vector<double> d, e;
+  std::vector<int> order;
+  std::vector<PivotCounts> counts;
+  std::vector<AlignedArray> arenas;  // of the subtrees, and last of the top
+};
+
+SupernodalLdlt::SupernodalLdlt(const Eigen::SparseMatrix<double>& K,
+                               const Eigen::SparseMatrix<double>& M, const Points* positions,
+                               const LdltOptions& options)
+    : impl_(std::make_unique<Impl>(make_pencil(K, M), positions, options)) {}
+
+SupernodalLdlt::~SupernodalLdlt() = default;
+SupernodalLdlt::SupernodalLdlt(SupernodalLdlt&&) noexcept = default;
+SupernodalLdlt& SupernodalLdlt::operator=(SupernodalLdlt&&) noexcept = default;
+
+LdltReport SupernodalLdlt::factorize(double shift) {
+  const PivotCounts counts = impl_->factorize(shift);
+  LdltReport report;
+  report.shift = shift;
+  report.negative = counts.negative;
+  report.two_by_two = counts.two_by_two;
+  report.replaced = counts.replaced;
+  report.smallest_pivot = counts.smallest;
+  if (impl_->options.check) {
+    const FactorCheck check =
+        check_factor(impl_->pencil, shift, [&](double* X, int width) { impl_->solve(X, width); });
+    report.backward_error = check.backward_error;
+    report.residual = check.residual;
+  }
+  report.near_singular = counts.replaced > 0 || !(counts.smallest > kSmallPivot) ||
+                         !(report.residual < kDoubtfulResidual);
+  return report;
+}
+
+void SupernodalLdlt::solve(Eigen::Ref<MatrixXd> X) const {
+  const int n = impl_->symbolic.size;
+  if (X.rows() != n || !impl_->factorized) {
+    throw Error(ErrorKind::bad_request, "", "solve",
+                impl_->factorized ? "right-hand sides have " + std::to_string(X.rows()) +
+                                        " rows, the matrix has " + std::to_string(n)
+                                  : "nothing is factorised yet");
+  }
+  const std::vector<int>& order = impl_->symbolic.order;
+  for (Index first = 0; first < X.cols();) {
+    const Index left = X.cols() - first;
+    const int chunk = left <= 8 ? 8 : left <= 16 ? 16 : kMaxChunk;
+    const Index used = std::min<Index>(left, chunk);
+    AlignedArray rows(static_cast<std::size_t>(n) * static_cast<std::size_t>(chunk));
+    for (int i = 0; i < n; ++i) {
+      double* row = rows.data() + static_cast<std::ptrdiff_t>(i) * chunk;
+      for (Index c = 0; c < chunk; ++c) row[c] = c < used ? X(order[i], first + c) : 0.0;
+    }
+    impl_->solve(rows.data(), chunk);
+    for (int i = 0; i < n; ++i) {
+      const double* row = rows.data() + static_cast<std::ptrdiff_t>(i) * chunk;
+      for (Index c = 0; c < used; ++c) X(order[i], first + c) = row[c];
+    }
+    first += used;
+  }
+}
+
+void SupernodalLdlt::solve_in_factor_order(double* X, int width) const { impl_->solve(X, width); }
+
+const SymbolicFactor& SupernodalLdlt::symbolic() const { return impl_->symbolic; }
+const Pencil& SupernodalLdlt::pencil() const { return impl_->pencil; }
+std::int64_t SupernodalLdlt::bytes() const { return impl_->bytes(); }
+
+}  // namespace timbre::detail

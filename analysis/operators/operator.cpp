@@ -299,7 +299,9 @@ Operator build(const Input& input, const OperatorOptions& options) {
 
 Operator compute_operator(const TriangleMesh& mesh, const OperatorOptions& options) {
   const Surface surface = detail::make_surface(mesh, options.mollification);
-  return build({mesh.faces, &mesh.vertices, surface}, options);
+  Operator op = build({mesh.faces, &mesh.vertices, surface}, options);
+  if (op.stiffness.rows() == mesh.vertices.rows()) op.positions = mesh.vertices;
+  return op;
 }
 
 Operator compute_operator(const Faces& faces, const Points& lengths, Index vertices,

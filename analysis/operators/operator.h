@@ -75,6 +75,8 @@ struct Operator {
   /// N; M itself where it is diagonal, else diagonal entries scaled to the same total (row sums of
   /// linear elements); 0 for rows that have no part.
   Eigen::VectorXd lumped_mass;
+  Points
+      positions;  ///< N x 3, or empty where they are not known; only the order of elimination asks
   std::vector<std::int32_t> component;  ///< N, connected component, -1 without part
   Eigen::VectorXd component_area;       ///< one per component, sum of its lumped mass
   std::vector<bool> has_constants;      ///< one per component: W has them in its kernel

@@ -13,7 +13,7 @@ namespace timbre::detail {
 
 struct LanczosOptions {
   int width = 8;  ///< vectors in a block, 8 or 16: more is faster to solve, but a larger basis
-  double tolerance = 1e-8;            ///< of a pair, beside |lambda| + scale
+  double tolerance = 1e-9;            ///< of a pair, beside |lambda| + scale
   std::uint64_t seed = 1;             ///< of the start
   int most_blocks = 64;               ///< of the basis
   std::function<void(int)> on_solve;  ///< after so many solves; may throw

@@ -90,6 +90,7 @@ std::vector<Component> split_into_components(const Operator& op) {
     part.stiffness = restricted(op.stiffness, part.vertices, local);
     part.mass = restricted(op.mass, part.vertices, local) / part.area;
     part.lumped_mass = op.lumped_mass(part.vertices) / part.area;
+    if (op.positions.rows() > 0) part.positions = op.positions(part.vertices, Eigen::all);
   }
   return components;
 }

@@ -16,6 +16,7 @@ struct Component {
   SparseMatrix stiffness;
   SparseMatrix mass;
   Eigen::VectorXd lumped_mass;
+  Points positions;   ///< of the rows, or empty
   double area = 0.0;  ///< true area; eigenvalues here are `area` times the true ones
   bool diagonal_mass = true;
   bool has_constants = true;

@@ -57,19 +57,17 @@ class Slicer {
   }
 
   SlicedPairs run() {
-    while (done_ < wanted_) band();
+    while (done_ < wanted_) search_around(place_shift());
+    if (!is_cut_counted_) confirm_cut();
     pairs_.bound = cut_;
-    if (!is_cut_counted_ && ldlt_.factorize(cut_).negative != done_) {
-      fail("the inertia count and the eigenvalues found disagree");
-    }
     pairs_.values.conservativeResize(done_);
     pairs_.vectors.conservativeResize(Eigen::NoChange, done_);
     return std::move(pairs_);
   }
 
  private:
-  void band() {
-    const double shift = place_shift();
+  // Around a shift at which the factor and `count_` are.
+  void search_around(double shift) {
     const Index need = count_ - done_;
     const double ahead = std::min(half_, static_cast<double>(wanted_ + 1 - count_));
     const BandGoal goal{cut_, static_cast<int>(need), static_cast<int>(std::max(0.0, ahead)),
@@ -83,6 +81,16 @@ class Slicer {
     }
     counted_ = count_;
     counted_shift_ = shift;
+  }
+
+  // The last count. If it says that copies are missing below the cut, they are looked for there.
+  void confirm_cut() {
+    const double bound = cut_;
+    count_ = static_cast<Index>(ldlt_.factorize(bound).negative);
+    if (count_ == done_) return;
+    step_back();
+    search_around(bound);
+    if (done_ < wanted_) fail("the inertia counts of two shifts disagree");
   }
 
   // Factorises where about `half_` pairs more are expected below, and counts them.
@@ -145,7 +153,7 @@ class Slicer {
   // Pairs of two bands are orthogonal only to their errors over their distance: those next to
   // each other are made so.
   void clean_seam(Index fresh) {
-    constexpr Index kNeighbours = 10;
+    constexpr Index kNeighbours = 20;
     const Index old = std::min(kNeighbours, done_);
     const Index count = std::min(kNeighbours, fresh);
     if (old == 0 || count == 0) return;
@@ -204,12 +212,15 @@ class Slicer {
   void step_back_if_cut_is_wrong(double shift) {
     if (is_cut_counted_) return;
     const bool is_right = ldlt_.factorize(cut_).negative == done_;
-    if (!is_right) {
-      done_ = counted_;
-      cut_ = counted_shift_;
-      is_cut_counted_ = true;
-    }
+    if (!is_right) step_back();
     if (ldlt_.factorize(shift).negative != count_) fail("two counts at one shift differ");
+  }
+
+  // To the last shift: everything below it is certain.
+  void step_back() {
+    done_ = counted_;
+    cut_ = counted_shift_;
+    is_cut_counted_ = true;
   }
 
   void make_room(Index columns) {

@@ -11,7 +11,7 @@ namespace timbre::detail {
 
 struct SlicingOptions {
   Eigen::Index count = 100;                ///< pairs wanted, from the lowest; below n / 4
-  double tolerance = 1e-8;                 ///< of a pair, beside |lambda| + the largest wanted
+  double tolerance = 1e-9;                 ///< of a pair, beside |lambda| + the largest wanted
   int half = 50;                           ///< pairs on each side of a shift, about
   int width = 0;                           ///< of blocks, 8 or 16; 0: chosen by count
   std::uint64_t seed = 1;                  ///< of start vectors

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -114,7 +115,7 @@ void copy_to_tiles(const double* X, int width, double* tiles) {
   for (int t = 0; t < ld; t += kTile) {
     for (int k = 0; k < ld; ++k, tiles += kTile) {
       if (k < width) {
-        std::copy_n(X + t + k * ld, kTile, tiles);
+        std::memcpy(tiles, X + t + k * ld, kTile * sizeof(double));
       } else {
         std::fill_n(tiles, kTile, 0.0);
       }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -38,7 +40,7 @@ class BunchKaufman {
 
  private:
   double& a(int i, int j) { return A_[i + j * ld_]; }
-  double scale(int k) const { return scale_[out_.order[k]]; }
+  [[nodiscard]] double scale(int k) const { return scale_[out_.order[k]]; }
 
   struct Choice {
     int row;   // comes to the pivot's last row
@@ -103,18 +105,19 @@ class BunchKaufman {
 
   const TileKernels& kernels_;
   double* A_;
-  int ld_, width_;
+  std::ptrdiff_t ld_;
+  int width_;
   const double* scale_;
   DiagonalBlock out_;
   PivotCounts counts_;
 };
 
 void copy_to_tiles(const double* X, int width, double* tiles) {
-  const int ld = padded(width);
-  for (int t = 0; t < ld; t += kTile) {
-    for (int k = 0; k < ld; ++k, tiles += kTile) {
+  const std::ptrdiff_t ld = padded(width);
+  for (std::ptrdiff_t t = 0; t < ld; t += kTile) {
+    for (std::ptrdiff_t k = 0; k < ld; ++k, tiles += kTile) {
       if (k < width) {
-        std::copy_n(X + t + k * ld, kTile, tiles);
+        std::memcpy(tiles, X + t + k * ld, kTile * sizeof(double));
       } else {
         std::fill_n(tiles, kTile, 0.0);
       }
@@ -134,7 +137,7 @@ void PivotCounts::add(const PivotCounts& other) {
 PivotCounts factorize_block(const TileKernels& kernels, double* A, int width, const double* scale,
                             double* work, const DiagonalBlock& out) {
   const PivotCounts counts = BunchKaufman(kernels, A, width, scale, out).run();
-  const int ld = padded(width);
+  const std::ptrdiff_t ld = padded(width);
   for (int k = 0; k < width; ++k) std::fill_n(A + k * ld, k + 1, 0.0);  // L without its diagonal
   kernels.invert(A, width, work);
   copy_to_tiles(work, width, out.inverse);

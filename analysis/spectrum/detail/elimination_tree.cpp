@@ -1,4 +1,5 @@
 #include <numeric>
+#include <utility>
 
 #include "timbre/analysis/spectrum/detail/symbolic.h"
 

@@ -1,6 +1,7 @@
 #include "timbre/analysis/spectrum/detail/front.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace timbre::detail {
 namespace {
@@ -22,6 +23,11 @@ Largest largest(const SymbolicFactor& symbolic) {
     most.below = std::max(most.below, rows * std::min<std::int64_t>(columns, kPanelWidth));
   }
   return most;
+}
+
+// Of constant size: no call.
+void copy_tile_column(const double* from, double* to) {
+  std::memcpy(to, from, kTile * sizeof(double));
 }
 
 // A triangle of whole tiles, without those above the diagonal: compact, as the solves read it.
@@ -67,7 +73,11 @@ void FrontFactorizer::factorize(const FactorInput& input, int s, std::span<const
                                 double* update, const FactorArrays& out) {
   const SymbolicFactor& symbolic = input.symbolic;
   assemble(input, s);
-  std::fill_n(update, update_size(symbolic, s), 0.0);
+  const std::int64_t side = padded(rows_);
+  for (std::int64_t j = 0; j < side; ++j) {  // on and below the diagonal tiles
+    const std::int64_t first = j / kTile * kTile;
+    std::fill_n(update + j * side + first, side - first, 0.0);
+  }
   for (const Child& child : children) add_child(symbolic, child, update);
   out.counts[s] = {};
   for (int p = input.layout.first_panel[s]; p < input.layout.first_panel[s + 1]; ++p) {
@@ -148,7 +158,7 @@ void FrontFactorizer::load_below(const PanelPlace& panel, const int* order) {
     const int row = t < rest_tiles_ ? begin_ + panel.width + kTile * t
                                     : padded(columns_) + kTile * (t - rest_tiles_);
     for (int k = 0; k < width_; ++k, to += kTile) {
-      std::copy_n(front_.data() + (begin_ + order[k]) * ld_ + row, kTile, to);
+      copy_tile_column(front_.data() + (begin_ + order[k]) * ld_ + row, to);
     }
     to += stride_ - kTile * width_;
   }

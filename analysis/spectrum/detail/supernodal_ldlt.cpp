@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,31 @@ std::vector<int> entry_rows(const SymbolicFactor& symbolic, const Pencil& pencil
   }
   return rows;
 }
+
+// One workspace for each thread at work, kept for the next shift.
+class WorkspacePool {
+ public:
+  struct Return {
+    WorkspacePool* pool;
+    void operator()(FrontFactorizer* fronts) const {
+      const std::lock_guard lock(pool->mutex_);
+      pool->free_.emplace_back(fronts);
+    }
+  };
+  using Loan = std::unique_ptr<FrontFactorizer, Return>;
+
+  [[nodiscard]] Loan borrow(const SymbolicFactor& symbolic) {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) free_.push_back(std::make_unique<FrontFactorizer>(symbolic));
+    Loan loan(free_.back().release(), Return{this});
+    free_.pop_back();
+    return loan;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<FrontFactorizer>> free_;
+};
 
 }  // namespace
 
@@ -104,11 +130,11 @@ struct SupernodalLdlt::Impl {
     const std::vector<double> scale = row_scales(pencil, shift);
     const FactorInput input{symbolic, layout, pencil, entry_row, scale, kernels, shift};
     parallel_for(std::ssize(plan.subtrees), threads, [&](std::int64_t i) {
-      FrontFactorizer fronts(symbolic);
-      run(input, plan.subtrees[i], fronts);
+      const auto fronts = workspaces.borrow(symbolic);
+      run(input, plan.subtrees[i], *fronts);
     });
-    FrontFactorizer fronts(symbolic);
-    run(input, plan.top, fronts);
+    const auto fronts = workspaces.borrow(symbolic);
+    run(input, plan.top, *fronts);
     PivotCounts all;
     for (const PivotCounts& one : counts) all.add(one);
     factorized = true;
@@ -130,14 +156,31 @@ struct SupernodalLdlt::Impl {
             .rows = symbolic.rows.data() + symbolic.first_row[s]};
   }
 
+  // The rows of X that the supernode coming next will read, its own and those below.
+  void prefetch_rows(int s, const double* X, int width) const {
+    constexpr int kLine = 64 / sizeof(double);
+    constexpr int kMost = 64;
+    const double* own = X + static_cast<std::ptrdiff_t>(symbolic.first_column[s]) * width;
+    for (int i = 0; i < std::min(symbolic.columns(s), kMost) * width; i += kLine) {
+      __builtin_prefetch(own + i);
+    }
+    const int* rows = symbolic.rows.data() + symbolic.first_row[s];
+    for (int i = 0; i < std::min(symbolic.rows_below(s), kMost); ++i) {
+      const double* row = X + static_cast<std::ptrdiff_t>(rows[i]) * width;
+      for (int c = 0; c < width; c += kLine) __builtin_prefetch(row + c);
+    }
+  }
+
   void solve(double* X, int width) const {
     const int last = symbolic.supernodes() - 1;
     for (int s = 0; s <= last; ++s) {
+      if (s < last) prefetch_rows(s + 1, X, width);
       for (int p = layout.first_panel[s]; p < layout.first_panel[s + 1]; ++p) {
         kernels.forward(panel(s, p), X, width);
       }
     }
     for (int s = last; s >= 0; --s) {
+      if (s > 0) prefetch_rows(s - 1, X, width);
       for (int p = layout.first_panel[s + 1] - 1; p >= layout.first_panel[s]; --p) {
         kernels.backward(panel(s, p), X, width);
       }
@@ -159,6 +202,7 @@ struct SupernodalLdlt::Impl {
   std::vector<int> order;
   std::vector<PivotCounts> counts;
   std::vector<AlignedArray> arenas;  // of the subtrees, and last of the top
+  WorkspacePool workspaces;
 };
 
 SupernodalLdlt::SupernodalLdlt(const Eigen::SparseMatrix<double>& K,

@@ -18,6 +18,8 @@ struct Kernels {
   static constexpr int kColumns = Lanes;                      // of a product found at once
   static constexpr int kSlice = Lanes == 8 ? 32 : 4 * Lanes;  // right-hand sides done at once
 
+  static constexpr int kAhead = 512;  // doubles, that are asked for before they are read
+
   static Vector& at(double* p) { return *reinterpret_cast<Vector*>(p); }
   static const Vector& at(const double* p) { return *reinterpret_cast<const Vector*>(p); }
 
@@ -180,15 +182,30 @@ struct Kernels {
     }
   }
 
-  template <bool Forward, bool Subtract, int N>
-  static void tiles(const double* tile, int rows, int width, bool triangle, double* x,
-                    const Places& y) {
-    constexpr int kRows = kSums / N < kTile ? kSums / N : kTile;
+  static constexpr int rows_at_once(int n) { return kSums / n < kTile ? kSums / n : kTile; }
+
+  template <bool Subtract, int N>
+  static void tiles_times(const double* tile, int rows, int width, bool triangle, double* x,
+                          const Places& y) {
     for (int row = 0; row < rows; row += kTile) {
       const int height = min(kTile, rows - row);
       const int depth = triangle ? row + height : width;
-      groups<Forward, Subtract, N, kRows>(tile, height, 0, depth, x, y, row);
+      groups<true, Subtract, N, rows_at_once(N)>(tile, height, 0, depth, x, y, row);
       tile += height * depth;
+    }
+  }
+
+  // From the last tile to the first: the way back through the factor is one stream too, but one
+  // that processors do not foresee.
+  template <bool Subtract, int N>
+  static void transposed_tiles_times(const double* end, int rows, int width, bool triangle,
+                                     double* x, const Places& y) {
+    for (int row = (rows - 1) / kTile * kTile; row >= 0 && rows > 0; row -= kTile) {
+      const int height = min(kTile, rows - row);
+      const int depth = triangle ? row + height : width;
+      end -= height * depth;
+      for (int i = 0; i < height * depth; i += kTile) __builtin_prefetch(end + i - kAhead);
+      groups<false, Subtract, N, rows_at_once(N)>(end, height, 0, depth, x, y, row);
     }
   }
 
@@ -202,10 +219,10 @@ struct Kernels {
         at(permuted + k * chunk + Lanes * v) = at(own + p.order[k] * chunk + Lanes * v);
       }
     }
-    tiles<true, false, N>(p.inverse, p.width, p.width, true, permuted, {own, chunk, nullptr});
+    tiles_times<false, N>(p.inverse, p.width, p.width, true, permuted, {own, chunk, nullptr});
     double* next = own + static_cast<std::int64_t>(p.width) * chunk;
-    tiles<true, true, N>(p.below, p.rest, p.width, false, own, {next, chunk, nullptr});
-    tiles<true, true, N>(p.below + p.rest * p.width, p.listed, p.width, false, own,
+    tiles_times<true, N>(p.below, p.rest, p.width, false, own, {next, chunk, nullptr});
+    tiles_times<true, N>(p.below + p.rest * p.width, p.listed, p.width, false, own,
                          {X, chunk, p.rows});
   }
 
@@ -234,13 +251,16 @@ struct Kernels {
     alignas(64) double solved[kPanelWidth * kMaxChunk];
     divide_by_pivots<N>(p, own, chunk, divided);
     double* next = own + static_cast<std::int64_t>(p.width) * chunk;
-    tiles<false, true, N>(p.below, p.rest, p.width, false, divided, {next, chunk, nullptr});
-    tiles<false, true, N>(p.below + p.rest * p.width, p.listed, p.width, false, divided,
-                          {X, chunk, p.rows});
+    const double* listed = p.below + p.rest * p.width;
+    transposed_tiles_times<true, N>(listed + p.listed * p.width, p.listed, p.width, false, divided,
+                                    {X, chunk, p.rows});
+    transposed_tiles_times<true, N>(listed, p.rest, p.width, false, divided,
+                                    {next, chunk, nullptr});
     for (int k = 0; k < p.width; ++k) {
       for (int v = 0; v < N; ++v) at(solved + k * chunk + Lanes * v) = Vector{};
     }
-    tiles<false, false, N>(p.inverse, p.width, p.width, true, solved, {divided, chunk, nullptr});
+    transposed_tiles_times<false, N>(p.below, p.width, p.width, true, solved,
+                                     {divided, chunk, nullptr});
     for (int k = 0; k < p.width; ++k) {
       for (int v = 0; v < N; ++v) {
         at(own + p.order[k] * chunk + Lanes * v) = at(solved + k * chunk + Lanes * v);

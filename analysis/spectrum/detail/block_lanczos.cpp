@@ -138,21 +138,28 @@ BandPairs BlockLanczos::run(double shift, const BandGoal& goal) {
   start();
   // Fitted on closed surfaces; what a run needed guides the next one.
   const double usual = 5.5 * P + 30.0 + 3.2 * std::max(goal.left, goal.right);
-  int next_test = std::max(2, static_cast<int>(share_ * usual / P));
-  BandPairs found;
-  for (int tests = 0;;) {
+  int tests = 0;
+  const BandPairs found =
+      search(shift, goal, std::max(2, static_cast<int>(share_ * usual / P)), tests);
+  share_ = std::clamp(share_ * (tests > 1 ? 1.02 : 0.97), 0.6, 2.0);
+  return found;
+}
+
+BandPairs BlockLanczos::go_on(double shift, const BandGoal& goal) {
+  int tests = 0;
+  return search(shift, goal, basis_.blocks(), tests);
+}
+
+BandPairs BlockLanczos::search(double shift, const BandGoal& goal, int next_test, int& tests) {
+  for (BandPairs found;;) {
     step();
     const int steps = basis_.blocks() - 1;
     const bool is_last = steps >= options_.most_blocks;
     if (steps < next_test && !is_last) continue;
     ++tests;
     int missing = 0;
-    if (!try_goal(shift, goal, found, missing) && !is_last) {
-      next_test = steps + 1 + static_cast<int>(1.8 * missing / P);
-      continue;
-    }
-    share_ = std::clamp(share_ * (tests > 1 ? 1.02 : 0.97), 0.6, 2.0);
-    return found;
+    if (try_goal(shift, goal, found, missing) || is_last) return found;
+    next_test = steps + 1 + static_cast<int>(1.8 * missing / options_.width);
   }
 }
 

@@ -48,6 +48,9 @@ class BlockLanczos {
   /// @param shift  that of the factor
   [[nodiscard]] BandPairs run(double shift, const BandGoal& goal);
 
+  /// Goes on with the last run for a higher goal.
+  [[nodiscard]] BandPairs go_on(double shift, const BandGoal& goal);
+
   /// Keeps pairs [first, first + count) of the last run out of the next ones, so that these find
   /// further copies of multiple eigenvalues.
   void lock(int first, int count);
@@ -61,6 +64,7 @@ class BlockLanczos {
   [[nodiscard]] double drift() const { return drift_; }
 
  private:
+  [[nodiscard]] BandPairs search(double shift, const BandGoal& goal, int next_test, int& tests);
   void start();
   void step();
   void orthogonalise(bool all);

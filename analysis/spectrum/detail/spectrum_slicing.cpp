@@ -18,7 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kGuard = 8;  // pairs beyond those wanted, among which to find a gap
+constexpr double kLeastGap = 1e-6;  // beside |lambda| + scale: copies are split by rounding only
+constexpr Index kGuard = 8;         // pairs beyond those wanted, among which to find a gap
 
 [[noreturn]] void fail(const std::string& cause) {
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
@@ -70,10 +71,15 @@ class Slicer {
   void search_around(double shift) {
     const Index need = count_ - done_;
     const double ahead = std::min(half_, static_cast<double>(wanted_ + 1 - count_));
-    const BandGoal goal{cut_, static_cast<int>(need), static_cast<int>(std::max(0.0, ahead)),
-                        std::max(slope_, spacing_) * static_cast<double>(wanted_)};
-    const BandPairs found = lanczos_.run(shift, goal);
+    BandGoal goal{cut_, static_cast<int>(need), static_cast<int>(std::max(0.0, ahead)), scale()};
+    BandPairs found = lanczos_.run(shift, goal);
     pairs_.slices.push_back({shift, count_, 0, 1});
+    // A cluster may hide the gap behind it.
+    constexpr int kTries = 3;
+    for (int i = 0; i < kTries && goal.right > 0 && end_before_gap(found) == need; ++i) {
+      goal.right = 2 * std::max(found.right, static_cast<int>(kGuard));
+      found = lanczos_.go_on(shift, goal);
+    }
     if (found.left == need) {
       accept(shift, found);
     } else {
@@ -119,25 +125,30 @@ class Slicer {
     fail("no shift with a share of the spectrum below it was found");
   }
 
-  // Everything up to a cut in the widest gap towards the end, or up to the shift.
-  void accept(double shift, const BandPairs& found) {
+  // How many pairs lie below the widest gap, in the last quarter of those above the shift or
+  // after the last one wanted; those below the shift if there is no clear gap.
+  [[nodiscard]] Index end_before_gap(const BandPairs& found) const {
     const auto total = static_cast<Index>(found.values.size());
     const Index left = found.left;
     const Index end = std::min(total, std::max(left, wanted_ + kGuard - done_));
-    const bool is_final = done_ + end > wanted_;
+    Index first = std::max<Index>(left + (end - left) * 3 / 4, left + 1);
+    if (done_ + end > wanted_) first = std::max(first, wanted_ - done_);
     Index best = left;
     double widest = 0.0;
-    for (Index i = std::max<Index>(left + (end - left) * 3 / 4, 1); i < end; ++i) {
-      if (is_final && done_ + i < wanted_) continue;
+    for (Index i = std::max<Index>(first, 1); i < end; ++i) {
       const double above = found.values[static_cast<std::size_t>(i)];
-      const double below = found.values[static_cast<std::size_t>(i - 1)];
-      const double blur =
-          found.errors[static_cast<std::size_t>(i)] + found.errors[static_cast<std::size_t>(i - 1)];
-      if (i <= left || above - below <= std::max(widest, 100.0 * blur)) continue;
-      widest = above - below;
+      const double gap = above - found.values[static_cast<std::size_t>(i - 1)];
+      if (gap <= std::max(widest, kLeastGap * (std::abs(above) + scale()))) continue;
+      widest = gap;
       best = i;
     }
-    is_cut_counted_ = best == left;
+    return best;
+  }
+
+  // Everything up to a cut in a gap, or up to the shift.
+  void accept(double shift, const BandPairs& found) {
+    const Index best = end_before_gap(found);
+    is_cut_counted_ = best == found.left;
     cut_ = is_cut_counted_ ? shift
                            : 0.5 * (found.values[static_cast<std::size_t>(best - 1)] +
                                     found.values[static_cast<std::size_t>(best)]);
@@ -190,7 +201,7 @@ class Slicer {
       rest.left = static_cast<int>(need - have);
       rest.right = 0;
       found = lanczos_.run(shift, rest);
-      ++pairs_.slices.back().columns;
+      ++pairs_.slices.back().runs;
     }
     lanczos_.unlock();
     std::vector<Index> order(static_cast<std::size_t>(need));
@@ -221,6 +232,11 @@ class Slicer {
     done_ = counted_;
     cut_ = counted_shift_;
     is_cut_counted_ = true;
+  }
+
+  // About the largest eigenvalue wanted.
+  [[nodiscard]] double scale() const {
+    return std::max(slope_, spacing_) * static_cast<double>(wanted_);
   }
 
   void make_room(Index columns) {

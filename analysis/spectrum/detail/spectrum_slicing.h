@@ -23,7 +23,7 @@ struct SliceReport {
   double shift = 0.0;
   std::int64_t below = 0;  ///< eigenvalues below the shift, by inertia
   int accepted = 0;        ///< pairs taken from this band
-  int columns = 0;         ///< runs that it took: 1, and one more for each repair
+  int runs = 0;            ///< of the iteration; more than 1 after a repair
 };
 
 struct SlicedPairs {

@@ -40,6 +40,7 @@ MatrixXd random_block(Eigen::Index rows, Eigen::Index cols) {
 // |A x - b| / (|A| |x| + |b|) of the worst column.
 double backward_error(const MatrixXd& A, const MatrixXd& X, const MatrixXd& B) {
   double worst = 0.0;
+  if (A.size() == 0) return 0.0;
   const double norm = A.cwiseAbs().rowwise().sum().maxCoeff();
   for (Eigen::Index c = 0; c < X.cols(); ++c) {
     const double error = (A * X.col(c) - B.col(c)).norm();

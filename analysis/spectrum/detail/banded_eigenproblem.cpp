@@ -5,6 +5,7 @@
 
 #include "timbre/analysis/core/error.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name is LAPACK's
 extern "C" void dsbevd_(const char* job, const char* half, const int* n, const int* below,
                         double* band, const int* ld, double* values, double* vectors,
                         const int* ld_vectors, double* work, const int* work_size, int* integers,

@@ -67,7 +67,7 @@ void BlockBasis::for_each_chunk(Visit visit) const {
 }
 
 Square BlockBasis::products(const double* Z, int first) const {
-  Square H = Square::Zero((used_ - first) * width_, width_);
+  Square H = Square::Zero(Eigen::Index{used_ - first} * width_, width_);
   const int square = width_ * width_;
   for_each_chunk([&](std::size_t begin, int rows) {
     for (int j = first; j < used_; ++j) {

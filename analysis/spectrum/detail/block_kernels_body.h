@@ -6,6 +6,7 @@
 // The kernels as templates over the number of doubles in a vector register. As with those of
 // tiles, all is in an unnamed namespace: code of one set must never be linked into another.
 
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result): a few rows
 namespace timbre::detail {
 namespace {
 
@@ -90,3 +91,4 @@ struct BlockProducts {
 
 }  // namespace
 }  // namespace timbre::detail
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result)

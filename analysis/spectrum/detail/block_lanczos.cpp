@@ -139,8 +139,7 @@ BandPairs BlockLanczos::run(double shift, const BandGoal& goal) {
   // Fitted on closed surfaces; what a run needed guides the next one.
   const double usual = 5.5 * P + 30.0 + 3.2 * std::max(goal.left, goal.right);
   int tests = 0;
-  const BandPairs found =
-      search(shift, goal, std::max(2, static_cast<int>(share_ * usual / P)), tests);
+  BandPairs found = search(shift, goal, std::max(2, static_cast<int>(share_ * usual / P)), tests);
   share_ = std::clamp(share_ * (tests > 1 ? 1.02 : 0.97), 0.6, 2.0);
   return found;
 }
@@ -188,7 +187,7 @@ void BlockLanczos::for_each_rows(const MatrixXd& coefficients, Write write) cons
     const int rows = std::min(kRows, mass_.size() - row);
     for (int j = 0; j < basis_.blocks(); ++j) {
       const double* const block = basis_.block(j) + at(row) * at(P);
-      packed.block(j * P, 0, P, rows) = Eigen::Map<const MatrixXd>(block, P, rows);
+      packed.block(Index{j} * P, 0, P, rows) = Eigen::Map<const MatrixXd>(block, P, rows);
     }
     write(row, product_at_b(packed.leftCols(rows), coefficients));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result): tiles of one front
 namespace timbre::detail {
 namespace {
 
@@ -212,3 +213,4 @@ void FrontFactorizer::store(double* values) const {
 }
 
 }  // namespace timbre::detail
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result)

@@ -90,7 +90,7 @@ struct SupernodalLdlt::Impl {
         kernels(tile_kernels(chosen.instructions)) {}
 
   [[nodiscard]] std::int64_t bytes() const {
-    std::int64_t values = layout.values + 2 * symbolic.size + plan.top.values;
+    std::int64_t values = layout.values + std::int64_t{2} * symbolic.size + plan.top.values;
     for (const Sequence& subtree : plan.subtrees) values += subtree.values;
     return static_cast<std::int64_t>(sizeof(double)) * values +
            threads * FrontFactorizer::workspace_bytes(symbolic);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,9 +38,13 @@ struct SymbolicFactor {
   double flops = 0.0;                   ///< of one factorisation, a multiply-add as two
 
   [[nodiscard]] int supernodes() const { return static_cast<int>(parent.size()); }
-  [[nodiscard]] int columns(int s) const { return first_column[s + 1] - first_column[s]; }
+  [[nodiscard]] int columns(int s) const {
+    const auto i = static_cast<std::size_t>(s);
+    return first_column[i + 1] - first_column[i];
+  }
   [[nodiscard]] int rows_below(int s) const {
-    return static_cast<int>(first_row[s + 1] - first_row[s]);
+    const auto i = static_cast<std::size_t>(s);
+    return static_cast<int>(first_row[i + 1] - first_row[i]);
   }
 };
 

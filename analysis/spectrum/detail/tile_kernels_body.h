@@ -7,6 +7,7 @@
 // are compiled for an instruction set include this. All is in an unnamed namespace, and nothing
 // inline of the standard library is used: code of one set must never be linked into another.
 
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result): a panel is small
 namespace timbre::detail {
 namespace {
 
@@ -298,3 +299,4 @@ struct Kernels {
 
 }  // namespace
 }  // namespace timbre::detail
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result)

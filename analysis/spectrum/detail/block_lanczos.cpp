@@ -123,10 +123,7 @@ bool BlockLanczos::try_goal(double shift, const BandGoal& goal, BandPairs& found
   chosen_.clear();
   for (auto pair = at_cut; pair != below.begin();) chosen_.push_back((--pair)->second);
   for (auto pair = above.begin(); pair != end_above; ++pair) chosen_.push_back(pair->second);
-  for (const int i : chosen_) {
-    found.values.push_back(shift + 1.0 / small_.values[i]);
-    found.errors.push_back(errors[at(i)]);
-  }
+  for (const int i : chosen_) found.values.push_back(shift + 1.0 / small_.values[i]);
   missing = std::max(goal.left - found.left, goal.right - found.right);
   const bool is_beyond_hope = found.sees_the_cut && found.left < goal.left;
   return missing <= 0 || (is_beyond_hope && found.right >= goal.right);

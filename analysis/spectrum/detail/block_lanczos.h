@@ -30,7 +30,6 @@ struct BandGoal {
 /// Converged pairs around a shift: an interval without a gap, as far as a Krylov space can see.
 struct BandPairs {
   std::vector<double> values;  ///< ascending
-  std::vector<double> errors;  ///< bounds of |lambda - exact|
   int left = 0;                ///< below the shift
   int right = 0;
   bool sees_the_cut = false;  ///< a pair at or below the cut has converged, or none are left to see
@@ -60,14 +59,10 @@ class BlockLanczos {
   /// the caller's order.
   void write_vectors(int first, int count, double* X, std::int64_t stride) const;
 
-  /// The largest loss of orthogonality that a full pass has met after a skipped one.
-  [[nodiscard]] double drift() const { return drift_; }
-
  private:
   [[nodiscard]] BandPairs search(double shift, const BandGoal& goal, int next_test, int& tests);
   void start();
   void step();
-  void orthogonalise(bool all);
   void solve(AlignedArray& X);
   [[nodiscard]] bool try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing);
   [[nodiscard]] Eigen::MatrixXd coefficients(int first, int count) const;
@@ -85,7 +80,7 @@ class BlockLanczos {
   BandedEigenpairs small_;
   std::vector<int> chosen_;  // of small_, in the order of the pairs
   bool full_passes_only_ = false;
-  double drift_ = 0.0;
+  double drift_ = 0.0;  // the largest loss of orthogonality that a full pass has met
   double share_ = 1.0;  // of the usual size of a basis, learnt from run to run
 };
 

@@ -1,6 +1,7 @@
 #include "timbre/analysis/spectrum/detail/spectrum_slicing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -76,7 +77,10 @@ class Slicer {
     pairs_.slices.push_back({shift, count_, 0, 1});
     // A cluster may hide the gap behind it.
     constexpr int kTries = 3;
-    for (int i = 0; i < kTries && goal.right > 0 && end_before_gap(found) == need; ++i) {
+    const auto lacks_a_gap = [&] {
+      return found.left == need && goal.right > 0 && end_before_gap(found) == need;
+    };
+    for (int i = 0; i < kTries && lacks_a_gap(); ++i) {
       goal.right = 2 * std::max(found.right, static_cast<int>(kGuard));
       found = lanczos_.go_on(shift, goal);
     }
@@ -91,12 +95,25 @@ class Slicer {
 
   // The last count. If it says that copies are missing below the cut, they are looked for there.
   void confirm_cut() {
-    const double bound = cut_;
-    count_ = static_cast<Index>(ldlt_.factorize(bound).negative);
+    count_ = count_at_cut();
     if (count_ == done_) return;
+    const double bound = cut_;
     step_back();
     search_around(bound);
     if (done_ < wanted_) fail("the inertia counts of two shifts disagree");
+  }
+
+  // Factorises at the cut, or beside it in the same gap where the count there is in doubt.
+  Index count_at_cut() {
+    constexpr std::array kPlaces = {0.0, 0.15, -0.15, 0.3, -0.3};
+    for (const double place : kPlaces) {
+      const double bound = cut_ + place * gap_;
+      const LdltReport report = ldlt_.factorize(bound);
+      if (report.near_singular) continue;
+      cut_ = bound;
+      return static_cast<Index>(report.negative);
+    }
+    fail("the count of eigenvalues is in doubt everywhere in a gap between them");
   }
 
   // Factorises where about `half_` pairs more are expected below, and counts them.
@@ -149,9 +166,12 @@ class Slicer {
   void accept(double shift, const BandPairs& found) {
     const Index best = end_before_gap(found);
     is_cut_counted_ = best == found.left;
-    cut_ = is_cut_counted_ ? shift
-                           : 0.5 * (found.values[static_cast<std::size_t>(best - 1)] +
-                                    found.values[static_cast<std::size_t>(best)]);
+    cut_ = shift;
+    if (!is_cut_counted_) {
+      const double below = found.values[static_cast<std::size_t>(best - 1)];
+      gap_ = found.values[static_cast<std::size_t>(best)] - below;
+      cut_ = below + 0.5 * gap_;
+    }
     make_room(done_ + best);
     lanczos_.write_vectors(0, static_cast<int>(best), column(done_), pairs_.vectors.rows());
     clean_seam(best);
@@ -222,8 +242,7 @@ class Slicer {
   // to the last shift is certain.
   void step_back_if_cut_is_wrong(double shift) {
     if (is_cut_counted_) return;
-    const bool is_right = ldlt_.factorize(cut_).negative == done_;
-    if (!is_right) step_back();
+    if (count_at_cut() != done_) step_back();
     if (ldlt_.factorize(shift).negative != count_) fail("two counts at one shift differ");
   }
 
@@ -271,6 +290,7 @@ class Slicer {
   Index done_ = 0;       // pairs accepted
   double anchor_ = 0.0;  // where they end
   double cut_ = -std::numeric_limits<double>::infinity();
+  double gap_ = 0.0;  // between eigenvalues, in whose middle the cut was put
   bool is_cut_counted_ = true;
   Index count_ = 0;    // eigenvalues below the present shift
   Index counted_ = 0;  // below the last one, all of which are known

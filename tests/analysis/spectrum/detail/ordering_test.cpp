@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -14,6 +13,7 @@
 #include "timbre/analysis/operators/operator.h"
 #include "timbre/analysis/spectrum/detail/symbolic.h"
 #include "timbre/datasets/analytic.h"
+#include "timbre/tests/support/refused_request.h"
 #include "timbre/tests/support/sparse_matrices.h"
 
 namespace timbre::detail {
@@ -91,28 +91,19 @@ TEST(ComputeOrdering, DissectionFillsLittleOnSurfaces) {
   }
 }
 
-void expect_refusal(const std::function<void()>& request, const std::string& line) {
-  try {
-    request();
-    FAIL() << "no exception";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_request);
-    EXPECT_EQ(error.what(), line);
-  }
-}
-
 TEST(ComputeOrdering, RefusesPositionsThatDoNotFit) {
   const Graph graph = adjacency(pencil_of(random_sparse(10, 3.0, 1)));
   Points points = random_points(9);
   const auto order = [&](const Points* p) {
     return [&graph, p] { (void)compute_ordering(graph, p, OrderingMethod::geometric); };
   };
-  expect_refusal(order(nullptr),
-                 "ordering: 'geometric' needs positions; choose 'metis' or 'automatic'");
-  expect_refusal(order(&points), "ordering: 9 positions for 10 unknowns; one for each is needed");
+  EXPECT_EQ(refused_request(order(nullptr)),
+            "ordering: 'geometric' needs positions; choose 'metis' or 'automatic'");
+  EXPECT_EQ(refused_request(order(&points)),
+            "ordering: 9 positions for 10 unknowns; one for each is needed");
   points = random_points(10);
   points(3, 2) = std::numeric_limits<double>::quiet_NaN();
-  expect_refusal(order(&points), "ordering: a position is not finite");
+  EXPECT_EQ(refused_request(order(&points)), "ordering: a position is not finite");
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -17,6 +16,7 @@
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/operators/operator.h"
 #include "timbre/datasets/analytic.h"
+#include "timbre/tests/support/refused_request.h"
 #include "timbre/tests/support/sparse_matrices.h"
 
 namespace timbre::detail {
@@ -337,27 +337,17 @@ TEST(SupernodalLdlt, ReportsWhatIsNotANumber) {
   EXPECT_TRUE(ldlt.factorize(0.0).near_singular);
 }
 
-void expect_refusal(const std::function<void()>& request, const std::string& line) {
-  try {
-    request();
-    FAIL() << "no exception";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_request);
-    EXPECT_EQ(error.what(), line);
-  }
-}
-
 TEST(SupernodalLdlt, RefusesWhatCannotBeSolvedAndSaysSo) {
   const SparseMatrix K = made_definite(random_sparse(10, 3.0, 1));
   SupernodalLdlt ldlt(K, no_entries(K));
   MatrixXd X = random_block(10, 1);
-  expect_refusal([&] { ldlt.solve(X); }, "solve: nothing is factorised yet");
+  EXPECT_EQ(refused_request([&] { ldlt.solve(X); }), "solve: nothing is factorised yet");
   ldlt.factorize(0.0);
   MatrixXd short_one = random_block(9, 1);
-  expect_refusal([&] { ldlt.solve(short_one); },
-                 "solve: right-hand sides have 9 rows, the matrix has 10");
-  expect_refusal([&] { SupernodalLdlt(K, SparseMatrix(9, 9)); },
-                 "pencil: matrices of 10 x 10 and 9 x 9; both must be square and of the same size");
+  EXPECT_EQ(refused_request([&] { ldlt.solve(short_one); }),
+            "solve: right-hand sides have 9 rows, the matrix has 10");
+  EXPECT_EQ(refused_request([&] { SupernodalLdlt(K, SparseMatrix(9, 9)); }),
+            "pencil: matrices of 10 x 10 and 9 x 9; both must be square and of the same size");
 }
 
 }  // namespace

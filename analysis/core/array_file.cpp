@@ -266,9 +266,12 @@ class ZipWriter {
 
 }  // namespace
 
-std::string npy_header(Eigen::Index rows, Eigen::Index cols) {
-  return cols == 1 ? npy("<f8", false, std::to_string(rows) + ",", nullptr, 0)
-                   : npy("<f8", true, shape_of(rows, cols), nullptr, 0);
+std::string npy_header(Eigen::Index rows, Eigen::Index cols, ElementType type) {
+  return npy(type == ElementType::float64 ? "<f8" : "<f4", true, shape_of(rows, cols), nullptr, 0);
+}
+
+std::string npy_vector_header(Eigen::Index size) {
+  return npy("<f8", false, std::to_string(size) + ",", nullptr, 0);
 }
 
 std::string to_npy(const Eigen::MatrixXd& matrix) {

@@ -27,9 +27,13 @@ namespace timbre {
 ///                than the header says, and for an int64 that no double holds
 [[nodiscard]] Eigen::MatrixXd from_npy(std::string_view bytes);
 
-/// What stands before the numbers of a matrix of float64 that follow column by column; of a
-/// vector if there is one column.
-[[nodiscard]] std::string npy_header(Eigen::Index rows, Eigen::Index cols);
+enum class ElementType : std::uint8_t { float64, float32 };
+
+/// What stands before the numbers of a matrix that follow column by column.
+[[nodiscard]] std::string npy_header(Eigen::Index rows, Eigen::Index cols,
+                                     ElementType type = ElementType::float64);
+/// What stands before the numbers of a vector of float64.
+[[nodiscard]] std::string npy_vector_header(Eigen::Index size);
 
 /// One array of an archive: `bytes` as `to_npy` makes them.
 struct NamedArray {

@@ -84,6 +84,14 @@ bool rename_to_free_name(const char* from, const char* to) {
   return false;
 }
 
+void rename_to(const std::string& from, const std::string& path, const Target& target,
+               bool overwrite) {
+  const bool renamed = overwrite ? ::rename(from.c_str(), target.path.c_str()) == 0
+                                 : rename_to_free_name(from.c_str(), target.path.c_str());
+  if (!renamed && errno == EEXIST) refuse_to_replace(path);
+  if (!renamed) fail(path, errno, "rename");
+}
+
 // Removes the temporary file unless it became the real one.
 class TemporaryFile {
  public:
@@ -120,10 +128,7 @@ class TemporaryFile {
     if (target_.mode) (void)::fchmod(descriptor_, *target_.mode);
     if (::fsync(descriptor_) != 0) fail(path_, errno, "write");
     if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno, "write");
-    const bool renamed = overwrite ? ::rename(name_.c_str(), target_.path.c_str()) == 0
-                                   : rename_to_free_name(name_.c_str(), target_.path.c_str());
-    if (!renamed && errno == EEXIST) refuse_to_replace(path_);
-    if (!renamed) fail(path_, errno, "rename");
+    rename_to(name_, path_, target_, overwrite);
     name_.clear();
   }
 
@@ -175,6 +180,12 @@ void write_file(const std::string& path, std::string_view content, bool overwrit
   OutputFile file(path, overwrite);
   file.write(content);
   file.commit();
+}
+
+void put_in_place(const std::string& from, const std::string& path, bool overwrite) {
+  const Target target = find_target(path, overwrite);
+  rename_to(from, path, target, overwrite);
+  sync_folder_of(target.path);
 }
 
 void require_writable(const std::string& path, bool overwrite) {

@@ -36,6 +36,12 @@ class OutputFile {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Gives a file that is complete and synchronised its name, as `write_file` does.
+///
+/// @param from  in the folder of `path`
+/// @throws Error  io; bad_request if `path` exists and is not to be replaced
+void put_in_place(const std::string& from, const std::string& path, bool overwrite);
+
 /// Throws what `write_file` would, as far as it can be known without writing: to be called
 /// before long work.
 void require_writable(const std::string& path, bool overwrite);

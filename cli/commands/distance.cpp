@@ -126,7 +126,8 @@ Summary stream_npy(const Arguments& args, const Context& context, const Triangle
                    const SourceSets& sets, const DistanceOptions& options) {
   Summary summary;
   OutputFile file(context.output, context.force);
-  file.write(npy_header(mesh.vertices.rows(), std::ssize(sets)));
+  const Index rows = mesh.vertices.rows();
+  file.write(sets.size() == 1 ? npy_vector_header(rows) : npy_header(rows, std::ssize(sets)));
   const auto take = [&](Index, const Columns& columns) {
     summarise(columns, summary);
     for (const auto& column : columns.colwise()) {

@@ -36,7 +36,7 @@ void BlockLanczos::solve(AlignedArray& X) {
 void BlockLanczos::start() {
   basis_.clear();
   projected_.clear();
-  std::mt19937_64 random(options_.seed++);
+  std::mt19937_64 random(memory_.seed++);
   for (int i = 0; i < mass_.size(); ++i) {
     const double scale = std::sqrt(std::abs(mass_.diagonal(i)));
     double* const row = U_.data() + at(i) * at(options_.width);
@@ -136,8 +136,9 @@ BandPairs BlockLanczos::run(double shift, const BandGoal& goal) {
   // Fitted on closed surfaces; what a run needed guides the next one.
   const double usual = 5.5 * P + 30.0 + 3.2 * std::max(goal.left, goal.right);
   int tests = 0;
-  BandPairs found = search(shift, goal, std::max(2, static_cast<int>(share_ * usual / P)), tests);
-  share_ = std::clamp(share_ * (tests > 1 ? 1.02 : 0.97), 0.6, 2.0);
+  BandPairs found =
+      search(shift, goal, std::max(2, static_cast<int>(memory_.basis_share * usual / P)), tests);
+  memory_.basis_share = std::clamp(memory_.basis_share * (tests > 1 ? 1.02 : 0.97), 0.6, 2.0);
   return found;
 }
 

@@ -14,9 +14,14 @@ namespace timbre::detail {
 struct LanczosOptions {
   int width = 8;  ///< vectors in a block, 8 or 16: more is faster to solve, but a larger basis
   double tolerance = 1e-9;            ///< of a pair, beside |lambda| + scale
-  std::uint64_t seed = 1;             ///< of the start
   int most_blocks = 64;               ///< of the basis
   std::function<void(int)> on_solve;  ///< after so many solves; may throw
+};
+
+/// What one run leaves to the next.
+struct LanczosMemory {
+  std::uint64_t seed = 1;    ///< of the next start
+  double basis_share = 1.0;  ///< of the usual size of a basis, learnt from run to run
 };
 
 /// What is wanted of a run.
@@ -55,6 +60,9 @@ class BlockLanczos {
   void lock(int first, int count);
   void unlock() { locked_.clear(); }
 
+  [[nodiscard]] const LanczosMemory& memory() const { return memory_; }
+  void set_memory(const LanczosMemory& memory) { memory_ = memory; }
+
   /// Vectors of pairs [first, first + count) of the last run, M-orthonormal, to columns of X in
   /// the caller's order.
   void write_vectors(int first, int count, double* X, std::int64_t stride) const;
@@ -81,7 +89,7 @@ class BlockLanczos {
   std::vector<int> chosen_;  // of small_, in the order of the pairs
   bool full_passes_only_ = false;
   double drift_ = 0.0;  // the largest loss of orthogonality that a full pass has met
-  double share_ = 1.0;  // of the usual size of a basis, learnt from run to run
+  LanczosMemory memory_;
 };
 
 }  // namespace timbre::detail

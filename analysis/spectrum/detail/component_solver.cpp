@@ -3,11 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
+#include <limits>
 #include <utility>
 
-#include "timbre/analysis/spectrum/detail/spectrum_slicing.h"
+#include "timbre/analysis/spectrum/detail/constants.h"
 
 namespace timbre::detail {
 namespace {
@@ -16,7 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kDenseSize = 200;
+constexpr Index kDenseSize = 200;       // and below: dense
+constexpr Index kDenseIfMany = 1000;    // and below: dense if more than a quarter is wanted
+constexpr Index kGeometricCount = 150;  // and below: an ordering that is found fast pays
 
 SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32_t>& rows,
                         const std::vector<std::int32_t>& local) {
@@ -32,43 +33,8 @@ SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32
   return part;
 }
 
-// With a diagonal mass an ordinary eigenproblem after scaling by its square root.
-void solve_dense(Component& component, Index count) {
-  const MatrixXd W = component.stiffness;
-  if (component.diagonal_mass) {
-    const VectorXd scale = component.lumped_mass.cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> dense(scale.asDiagonal() * W *
-                                                        scale.asDiagonal());
-    component.values = dense.eigenvalues().head(count);
-    component.vectors = scale.asDiagonal() * dense.eigenvectors().leftCols(count);
-  } else {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(W, MatrixXd(component.mass));
-    component.values = dense.eigenvalues().head(count);
-    component.vectors = dense.eigenvectors().leftCols(count);
-  }
-}
-
-void sort_pairs(Component& component) {
-  const Index k = component.values.size();
-  std::vector<Index> order(static_cast<std::size_t>(k));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return component.values[a] < component.values[b]; });
-  component.values = VectorXd(component.values(order));
-  component.vectors = MatrixXd(component.vectors(Eigen::all, order));
-}
-
-// The kernel of W is known: the constants. They replace what the solver found of them, and leave
-// the other vectors, which hold a little of them where weights spread over many powers of ten.
-void put_exact_zero(Component& component) {
-  component.values = component.values.cwiseMax(0.0);
-  if (!component.has_constants) return;
-  component.values[0] = 0.0;
-  const VectorXd constant =
-      VectorXd::Constant(component.size(), 1.0 / std::sqrt(component.lumped_mass.sum()));
-  const Eigen::RowVectorXd shares = (component.mass * constant).transpose() * component.vectors;
-  component.vectors.noalias() -= constant * shares;
-  component.vectors.col(0) = constant;
+bool suits_dense(Index n, Index count) {
+  return n <= kDenseSize || (n <= kDenseIfMany && count > n / 4);
 }
 
 }  // namespace
@@ -95,41 +61,73 @@ std::vector<Component> split_into_components(const Operator& op) {
   return components;
 }
 
-void solve_lowest(Component& component, Index count, const ComponentSolveOptions& options) {
-  const Index n = component.size();
-  count = std::min(count, n);
-  if (n <= kDenseSize || count > n / 4) {
-    if (options.on_solve) options.on_solve(1);
-    solve_dense(component, count);
-    if (options.on_solve) options.on_solve(1);
-  } else {
-    SlicedPairs found =
-        lowest_pairs(component.stiffness, component.mass, nullptr,
-                     {.count = count,
-                      .seed = 1 + 1000 * static_cast<std::uint64_t>(options.attempt),
-                      .on_solve = options.on_solve});
-    component.values = std::move(found.values);
-    component.vectors = std::move(found.vectors);
-  }
-  sort_pairs(component);
-  put_exact_zero(component);
+ComponentSolver::ComponentSolver(Component component, const ComponentSolveOptions& options)
+    : component_(std::move(component)), dense_(component_.size()), check_(component_.mass) {
+  if (suits_dense(component_.size(), options.count)) return;
+  const bool by_positions = options.count <= kGeometricCount && component_.positions.rows() > 0;
+  slicer_.emplace(component_.stiffness, component_.mass,
+                  by_positions ? &component_.positions : nullptr,
+                  SlicingOptions{.count = options.count,
+                                 .tolerance = options.tolerance,
+                                 .certify = options.certify,
+                                 .has_constants = component_.has_constants,
+                                 .on_solve = options.on_solve});
 }
 
-VectorXd relative_residuals(const Component& component) {
-  const MatrixXd mass_vectors = component.mass * component.vectors;
-  const MatrixXd errors =
-      component.stiffness * component.vectors - mass_vectors * component.values.asDiagonal();
-  // A lone constant has no scale of its own; Weyl's density gives it one.
-  const double largest = component.values.size() > 1 ? component.values.maxCoeff() : 0.0;
-  const double scale = largest > 0.0 ? largest : 4.0 * std::numbers::pi;
-  VectorXd residuals(component.values.size());
-  for (Index i = 0; i < residuals.size(); ++i) {
-    const double error =
-        std::sqrt((errors.col(i).array().square() / component.lumped_mass.array()).sum());
-    const double norm = std::sqrt(component.vectors.col(i).dot(mass_vectors.col(i)));
-    residuals[i] = error / ((component.values[i] + scale) * norm);
+void ComponentSolver::advance() {
+  if (is_exhausted()) return;
+  if (!slicer_) {
+    solve_dense();
+    return take_over(component_.size(), std::numeric_limits<double>::infinity());
   }
-  return residuals;
+  if (slicer_->is_done()) slicer_->want(certain_ + std::max<Index>(20, certain_ / 4));
+  slicer_->advance();
+  take_over(slicer_->state().certain, slicer_->state().bound);
+}
+
+void ComponentSolver::take_over(Index certain, double bound) {
+  const Index fresh = certain - certain_;
+  static const std::vector<int> as_given;
+  const Pencil own = slicer_ ? Pencil{} : make_pencil(component_.stiffness, component_.mass);
+  const VectorXd errors = pair_errors(slicer_ ? slicer_->factor().pencil() : own,
+                                      slicer_ ? slicer_->factor().symbolic().order : as_given,
+                                      component_.lumped_mass, pairs(), certain_, fresh);
+  errors_.insert(errors_.end(), errors.begin(), errors.end());
+  check_.add(pairs(), certain_, fresh);
+  certain_ = certain;
+  bound_ = bound;
+}
+
+// With a diagonal mass an ordinary eigenproblem after scaling by its square root. The kernel of W
+// is known: the constants.
+void ComponentSolver::solve_dense() {
+  const MatrixXd W = component_.stiffness;
+  const Index n = component_.size();
+  dense_.append(n);
+  auto vectors = dense_.vectors(0, n);
+  VectorXd values;
+  if (component_.diagonal_mass) {
+    const VectorXd scale = component_.lumped_mass.cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> dense(scale.asDiagonal() * W *
+                                                        scale.asDiagonal());
+    values = dense.eigenvalues();
+    vectors = scale.asDiagonal() * dense.eigenvectors();
+  } else {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense(W, MatrixXd(component_.mass));
+    values = dense.eigenvalues();
+    vectors = dense.eigenvectors();
+  }
+  for (Index i = 0; i < n; ++i) dense_.value(i) = std::max(values[i], 0.0);
+  if (component_.has_constants) put_constants(component_.mass, dense_, 0, n);
+}
+
+void ComponentSolver::forget_before(Index pair) {
+  slicer_ ? slicer_->forget_before(pair) : dense_.drop_before(pair);
+}
+
+const std::vector<SliceReport>& ComponentSolver::slices() const {
+  static const std::vector<SliceReport> none;
+  return slicer_ ? slicer_->state().slices : none;
 }
 
 }  // namespace timbre::detail

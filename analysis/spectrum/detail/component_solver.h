@@ -3,14 +3,18 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "timbre/analysis/operators/operator.h"
+#include "timbre/analysis/spectrum/detail/pair_check.h"
+#include "timbre/analysis/spectrum/detail/pair_window.h"
+#include "timbre/analysis/spectrum/detail/spectrum_slicing.h"
 
 namespace timbre::detail {
 
-/// One connected component of a mesh, scaled to unit area, and the eigenpairs found
-/// so far. It has one zero eigenvalue, of the constant function, or with a Dirichlet boundary none.
+/// One connected component of a mesh, scaled to unit area. It has one zero eigenvalue, of the
+/// constant function, or with a Dirichlet boundary none.
 struct Component {
   std::vector<std::int32_t> vertices;  ///< rows of the whole mesh
   SparseMatrix stiffness;
@@ -21,26 +25,72 @@ struct Component {
   bool diagonal_mass = true;
   bool has_constants = true;
 
-  Eigen::VectorXd values;   ///< ascending, the lowest of the component
-  Eigen::MatrixXd vectors;  ///< M-orthonormal
-
   [[nodiscard]] Eigen::Index size() const { return stiffness.rows(); }
-  [[nodiscard]] bool exhausted() const { return values.size() == size(); }
 };
 
 [[nodiscard]] std::vector<Component> split_into_components(const Operator& op);
 
 struct ComponentSolveOptions {
-  int attempt = 0;                    ///< another start for each
+  Eigen::Index count = 100;  ///< pairs wanted at first
+  double tolerance = 1e-9;   ///< as SlicingOptions has it
+  bool certify = true;
   std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
 };
 
-/// Replaces the pairs by the lowest `count` (capped at n), or some more. Dense for a small
-/// component or a large share of its pairs, else band by band.
-/// @throws Error  not_converged
-void solve_lowest(Component& component, Eigen::Index count, const ComponentSolveOptions& options);
+/// The eigenpairs of a component, from the lowest, found little by little and handed on in that
+/// order: all at once by a dense solver if it is small, else band by band.
+class ComponentSolver {
+ public:
+  ComponentSolver(Component component, const ComponentSolveOptions& options);
+  ComponentSolver(const ComponentSolver&) = delete;
+  ComponentSolver& operator=(const ComponentSolver&) = delete;
 
-/// Relative residual of each pair, in the norm of the inverse lumped mass.
-[[nodiscard]] Eigen::VectorXd relative_residuals(const Component& component);
+  [[nodiscard]] const Component& component() const { return component_; }
+
+  /// Finds some more pairs; where all that were wanted are known, raises that number first.
+  /// Does nothing once all pairs are known.
+  /// @throws Error  not_converged
+  void advance();
+
+  [[nodiscard]] Eigen::Index certain() const { return certain_; }  ///< pairs known for certain
+  /// Exactly `certain()` eigenvalues lie below; infinite when all are known.
+  [[nodiscard]] double bound() const { return bound_; }
+  [[nodiscard]] bool is_exhausted() const { return certain_ == component_.size(); }
+
+  /// Those not forgotten, up to `certain()`; some may follow.
+  [[nodiscard]] const PairWindow& pairs() const { return slicer_ ? slicer_->pairs() : dense_; }
+  /// |K x - lambda M x| in the norm of the inverse lumped mass, of a certain pair.
+  [[nodiscard]] double error(Eigen::Index pair) const {
+    return errors_[static_cast<std::size_t>(pair)];
+  }
+  /// max |X^T M X - I| of the certain pairs, as OrthonormalityCheck has it.
+  [[nodiscard]] double orthonormality() const { return check_.worst(); }
+  [[nodiscard]] const std::vector<SliceReport>& slices() const;
+
+  void forget_before(Eigen::Index pair);
+
+  /// To or from a StateWriter or StateReader. Dense pairs are not stored but computed again.
+  template <typename File>
+  void exchange(File& file) {
+    exchange_value(file, certain_);
+    exchange_value(file, bound_);
+    exchange_vector(file, errors_);
+    check_.exchange(file);
+    if (slicer_) slicer_->exchange(file);
+    if (!slicer_ && certain_ > dense_.end()) solve_dense();
+  }
+
+ private:
+  void solve_dense();
+  void take_over(Eigen::Index certain, double bound);
+
+  Component component_;
+  PairWindow dense_;
+  std::optional<SpectrumSlicer> slicer_;
+  OrthonormalityCheck check_;
+  std::vector<double> errors_;
+  Eigen::Index certain_ = 0;
+  double bound_ = SlicingState::kNowhere;
+};
 
 }  // namespace timbre::detail

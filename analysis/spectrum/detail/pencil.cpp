@@ -1,6 +1,7 @@
 #include "timbre/analysis/spectrum/detail/pencil.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -130,6 +131,27 @@ void multiply(const Pencil& pencil, double shift, const double* X, int width, do
       for (int c = 0; c < width; ++c) yi[c] += a * xj[c];
       if (i == j) continue;
       for (int c = 0; c < width; ++c) yj[c] += a * xi[c];
+    }
+  }
+}
+
+void eigenpair_rests(const Pencil& pencil, const double* values, const double* X, double* R) {
+  constexpr int kWidth = kPencilWidth;
+  std::fill_n(R, std::int64_t{pencil.size} * kWidth, 0.0);
+  std::array<double, kWidth> a{};
+  for (int j = 0; j < pencil.size; ++j) {
+    const double* xj = X + std::int64_t{j} * kWidth;
+    double* rj = R + std::int64_t{j} * kWidth;
+    for (std::int64_t e = pencil.start[j]; e < pencil.start[j + 1]; ++e) {
+      const int i = pencil.row[e];
+      const double k = pencil.k[e];
+      const double m = pencil.m[e];
+      for (int c = 0; c < kWidth; ++c) a[c] = k - values[c] * m;
+      const double* xi = X + std::int64_t{i} * kWidth;
+      double* ri = R + std::int64_t{i} * kWidth;
+      for (int c = 0; c < kWidth; ++c) ri[c] += a[c] * xj[c];
+      if (i == j) continue;
+      for (int c = 0; c < kWidth; ++c) rj[c] += a[c] * xi[c];
     }
   }
 }

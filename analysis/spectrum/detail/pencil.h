@@ -6,6 +6,8 @@
 
 namespace timbre::detail {
 
+constexpr int kPencilWidth = 8;  ///< columns that `eigenpair_rests` takes at once
+
 /// Two symmetric matrices K and M on one pattern, for the family K - s M: the lower triangles,
 /// in compressed columns with ascending rows. Every diagonal entry is there.
 struct Pencil {
@@ -35,6 +37,13 @@ struct Pencil {
 /// @param X  size x width, row-major
 /// @param Y  size x width, row-major; not X
 void multiply(const Pencil& pencil, double shift, const double* X, int width, double* Y);
+
+/// R = K X - M X diag(values): what is left of eigenpairs.
+///
+/// @param X       size x kPencilWidth, row-major
+/// @param values  kPencilWidth
+/// @param R       size x kPencilWidth, row-major; not X
+void eigenpair_rests(const Pencil& pencil, const double* values, const double* X, double* R);
 
 /// For each row the largest |K - s M| in it: the scale to which its pivot is compared.
 [[nodiscard]] std::vector<double> row_scales(const Pencil& pencil, double shift);

@@ -3,17 +3,24 @@
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "timbre/analysis/mesh/triangle_mesh.h"
+#include "timbre/analysis/spectrum/detail/block_lanczos.h"
+#include "timbre/analysis/spectrum/detail/pair_window.h"
+#include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
 
 namespace timbre::detail {
 
 struct SlicingOptions {
-  Eigen::Index count = 100;                ///< pairs wanted, from the lowest; below n / 4
-  double tolerance = 1e-9;                 ///< of a pair, beside |lambda| + the largest wanted
-  int half = 50;                           ///< pairs on each side of a shift, about
-  int width = 0;                           ///< of blocks, 8 or 16; 0: chosen by count
+  Eigen::Index count = 100;  ///< pairs wanted, from the lowest; `want` can raise it
+  double tolerance = 1e-9;   ///< of a pair, beside |lambda| + the largest wanted
+  int half = 50;             ///< pairs on each side of a shift, about
+  int width = 0;             ///< of blocks, 8 or 16; 0: chosen by count
+  bool certify = true;       ///< count at the end of the list, too
+  /// The kernel of K is the constants: the first pair becomes exactly that.
+  bool has_constants = false;
   std::uint64_t seed = 1;                  ///< of start vectors
   std::function<void(int)> on_solve = {};  ///< after so many solves with a factor; may throw
 };
@@ -26,26 +33,97 @@ struct SliceReport {
   int runs = 0;            ///< of the iteration; more than 1 after a repair
 };
 
-struct SlicedPairs {
-  Eigen::VectorXd values;   ///< ascending; at least `count`, all that were found below `bound`
-  Eigen::MatrixXd vectors;  ///< n x values, M-orthonormal
-  double bound = 0.0;       ///< exactly as many eigenvalues as `values` lie below, by inertia
+/// All that the next band depends on, but the pairs of the window.
+struct SlicingState {
+  static constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+
+  Eigen::Index wanted = 0;
+  Eigen::Index found = 0;    ///< pairs up to `cut`
+  Eigen::Index certain = 0;  ///< of these: exactly as many lie below `bound`, by inertia
+  double bound = kNowhere;   ///< infinite once every pair of the matrices is known
+  double cut = kNowhere;     ///< where the next band begins
+  double gap = 0.0;          ///< between eigenvalues, in whose middle the cut was put
+  double slope = 0.0;        ///< spacing of eigenvalues, as found lately
+  LanczosMemory lanczos;
   std::vector<SliceReport> slices;
+
+  /// To or from a StateWriter or StateReader.
+  template <typename File>
+  void exchange(File& file) {
+    for (Eigen::Index* number : {&wanted, &found, &certain}) exchange_value(file, *number);
+    for (double* number : {&bound, &cut, &gap, &slope}) exchange_value(file, *number);
+    exchange_value(file, lanczos);
+    exchange_vector(file, slices);
+  }
 };
 
 /// The lowest eigenpairs of K x = lambda M x, band by band: a shift inside the spectrum, its
 /// inertia count, block Lanczos around it, and a cut in a gap where the next band begins
 /// (spectrum slicing: Parlett 1980, section 3.3; Grimes, Lewis and Simon 1994). All pairs between
 /// two shifts are there when their number is what the counts say; where copies of a multiple
-/// eigenvalue are missing, they are looked for beside those known.
-///
-/// @param K          n x n, symmetric, positive semi-definite
-/// @param M          n x n, symmetric, positive definite; about sum(M) / (4 pi) eigenvalues are
-///                   expected in a unit interval (Weyl)
-/// @param positions  n x 3 for a geometric ordering, or nullptr
-/// @throws Error  not_converged if the counts cannot be met
-[[nodiscard]] SlicedPairs lowest_pairs(const Eigen::SparseMatrix<double>& K,
-                                       const Eigen::SparseMatrix<double>& M,
-                                       const Points* positions, const SlicingOptions& options);
+/// eigenvalue are missing, they are looked for beside those known. Pairs above the last shift are
+/// certain only after the next.
+class SpectrumSlicer {
+ public:
+  /// Orders and analyses; computes no pair.
+  ///
+  /// @param K          n x n, symmetric, positive semi-definite; n above 100
+  /// @param M          n x n, symmetric, positive definite; about sum(M) / (4 pi) eigenvalues are
+  ///                   expected in a unit interval (Weyl). Must outlive this
+  /// @param positions  n x 3 for a geometric ordering, or nullptr
+  SpectrumSlicer(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& M,
+                 const Points* positions, const SlicingOptions& options);
+
+  /// Raises the number of pairs wanted; capped at n.
+  void want(Eigen::Index count);
+  [[nodiscard]] bool is_done() const { return state_.certain >= state_.wanted; }
+
+  /// Finds some more pairs, or proves some to be all there are, and so raises `state().certain`.
+  ///
+  /// @throws Error  not_converged if the counts cannot be met, with several starts
+  void advance();
+
+  [[nodiscard]] const SlicingState& state() const { return state_; }
+  [[nodiscard]] const PairWindow& pairs() const { return pairs_; }  ///< up to `found`
+  [[nodiscard]] const SupernodalLdlt& factor() const { return ldlt_; }
+
+  /// Pairs before number `first` are not asked for any more. Some of them are kept for a while.
+  void forget_before(Eigen::Index first);
+
+  /// To or from a StateWriter or StateReader; a slicer of the same matrices and options goes on
+  /// where the other was.
+  template <typename File>
+  void exchange(File& file) {
+    state_.exchange(file);
+    pairs_.exchange(file);
+  }
+
+ private:
+  void find_more();
+  void plan_band();
+  void search_around(double shift);
+  void confirm_cut();
+  Eigen::Index count_at_cut();
+  double place_shift();
+  [[nodiscard]] Eigen::Index end_before_gap(const BandPairs& band) const;
+  void accept(double shift, const BandPairs& band);
+  void repair(double shift, const BandGoal& goal, BandPairs band);
+  void step_back_if_cut_is_wrong(double shift);
+  void step_back();
+  void polish(Eigen::Index fresh);
+  void advance_to(double cut, Eigen::Index accepted);
+  [[nodiscard]] bool is_cut_counted() const { return state_.found == state_.certain; }
+  [[nodiscard]] double scale() const;
+
+  const Eigen::SparseMatrix<double>& mass_;
+  SlicingOptions options_;
+  SupernodalLdlt ldlt_;
+  BlockLanczos lanczos_;
+  double spacing_;  // of eigenvalues, by Weyl's law
+  PairWindow pairs_;
+  SlicingState state_;
+  double half_ = 0.0;       // pairs on each side of the shift in this band
+  Eigen::Index count_ = 0;  // eigenvalues below the present shift
+};
 
 }  // namespace timbre::detail

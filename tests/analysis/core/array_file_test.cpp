@@ -30,7 +30,7 @@ TEST(NpyHeader, IsThatOfTheWholeArray) {
   const std::string header = npy_header(5, 3);
   EXPECT_EQ(to_npy(matrix).substr(0, header.size()), header);
   EXPECT_EQ(to_npy(matrix).size(), header.size() + 15 * sizeof(double));
-  const std::string of_vector = npy_header(5, 1);
+  const std::string of_vector = npy_vector_header(5);
   EXPECT_EQ(to_npy(Eigen::VectorXd(matrix.col(0))).substr(0, of_vector.size()), of_vector);
 }
 

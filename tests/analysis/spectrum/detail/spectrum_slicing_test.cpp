@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -32,16 +33,52 @@ TEST_P(EveryWidth, FindsAllCopiesWhereverTheListEnds) {
   const Operator op = compute_operator(torus.faces, torus.lengths, torus.vertices);
   const std::vector<double> exact = torus_eigenvalues(kSide);
   for (const int count : {20, 21, 23, 30, 31, 33, 40, 60, 70}) {
-    const SlicedPairs found = lowest_pairs(op.stiffness, op.mass, nullptr,
-                                           {.count = count, .half = 15, .width = GetParam()});
-    ASSERT_GE(found.values.size(), count);
-    EXPECT_EQ(found.values.size(),
-              std::count_if(exact.begin(), exact.end(), [&](double x) { return x < found.bound; }));
-    for (Eigen::Index i = 0; i < found.values.size(); ++i) {
-      ASSERT_NEAR(found.values[i], exact[static_cast<std::size_t>(i)], 1e-7) << count << ' ' << i;
+    SpectrumSlicer slicer(op.stiffness, op.mass, nullptr,
+                          {.count = count, .half = 15, .width = GetParam()});
+    while (!slicer.is_done()) slicer.advance();
+    const Eigen::Index found = slicer.state().certain;
+    ASSERT_GE(found, count);
+    EXPECT_EQ(found, std::count_if(exact.begin(), exact.end(),
+                                   [&](double x) { return x < slicer.state().bound; }));
+    for (Eigen::Index i = 0; i < found; ++i) {
+      ASSERT_NEAR(slicer.pairs().value(i), exact[static_cast<std::size_t>(i)], 1e-7)
+          << count << ' ' << i;
     }
-    const Eigen::MatrixXd gram = found.vectors.transpose() * (op.mass * found.vectors);
+    const auto vectors = slicer.pairs().vectors(0, found);
+    const Eigen::MatrixXd gram = vectors.transpose() * (op.mass * vectors);
     EXPECT_TRUE(gram.isIdentity(1e-8)) << count;
+  }
+}
+
+TEST(SpectrumSlicer, FindsTheWholeSpectrumToItsEnd) {
+  constexpr int kSide = 34;
+  const IntrinsicMesh torus = make_flat_torus(kSide);
+  const Operator op = compute_operator(torus.faces, torus.lengths, torus.vertices);
+  const std::vector<double> exact = torus_eigenvalues(kSide);
+  SpectrumSlicer slicer(op.stiffness, op.mass, nullptr, {.count = kSide * kSide, .half = 50});
+  while (!slicer.is_done()) slicer.advance();
+  ASSERT_EQ(slicer.state().certain, kSide * kSide);
+  EXPECT_EQ(slicer.state().bound, std::numeric_limits<double>::infinity());
+  for (Eigen::Index i = 0; i < kSide * kSide; ++i) {
+    ASSERT_NEAR(slicer.pairs().value(i), exact[static_cast<std::size_t>(i)], 1e-6) << i;
+  }
+}
+
+TEST(SpectrumSlicer, GoesOnWhenMoreIsWanted) {
+  constexpr int kSide = 30;
+  const IntrinsicMesh torus = make_flat_torus(kSide);
+  const Operator op = compute_operator(torus.faces, torus.lengths, torus.vertices);
+  const std::vector<double> exact = torus_eigenvalues(kSide);
+  SpectrumSlicer slicer(op.stiffness, op.mass, nullptr, {.count = 30, .half = 15});
+  Eigen::Index seen = 0;
+  for (int count = 30; count <= 130; count += 25) {
+    slicer.want(count);
+    while (!slicer.is_done()) slicer.advance();
+    for (; seen < slicer.state().certain; ++seen) {
+      ASSERT_NEAR(slicer.pairs().value(seen), exact[static_cast<std::size_t>(seen)], 1e-7);
+    }
+    slicer.forget_before(seen);
+    EXPECT_LE(slicer.pairs().end() - slicer.pairs().first(), 60);
   }
 }
 

@@ -1,6 +1,4 @@
-#include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "timbre/analysis/core/array_file.h"
@@ -11,6 +9,7 @@
 #include "timbre/analysis/operators/finite_elements.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 #include "timbre/cli/command.h"
+#include "timbre/cli/commands/stream_spectrum.h"
 #include "timbre/cli/options.h"
 #include "timbre/cli/version.h"
 
@@ -21,6 +20,7 @@ struct Arguments {
   std::string mesh;
   OperatorOptions op;
   SpectrumOptions spectrum;
+  StreamOptions stream;
 };
 
 void add_sparse(std::vector<NamedArray>& arrays, const std::string& name,
@@ -67,29 +67,19 @@ std::string lines(const Eigen::VectorXd& values) {
   return text;
 }
 
-// What goes beside F.npy.
-std::string values_path(const std::string& output) {
-  return output.substr(0, output.size() - 4) + ".evals.npy";
+bool is_streamed(const Context& context) {
+  return !context.output.empty() && context.output != "-" && array_format(context.output) == "npy";
 }
 
-// Both files or none.
-void write_arrays(const Context& context, const Spectrum& found) {
-  const std::string beside = values_path(context.output);
-  context.write_result(beside, to_npy(found.values));
-  try {
-    context.write_result(context.output, to_npy(found.vectors));
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw;
-  }
-}
-
-void require_outputs(const Context& context) {
+void require_outputs(const Arguments& args, const Context& context) {
   if (context.output.empty()) return;
-  const std::string format = array_format(context.output);
+  (void)array_format(context.output);
   context.require_output();
-  if (format == "npy") require_writable(values_path(context.output), context.force);
+  if (is_streamed(context)) return require_stream_can_begin(context, args.stream);
+  if (args.stream.resume || args.stream.type != ElementType::float64) {
+    throw Error(ErrorKind::bad_request, "", args.stream.resume ? "--resume" : "--float32",
+                "is for eigenfunctions in a file: -o F.npy");
+  }
 }
 
 void write_spectrum(const Context& context, const TriangleMesh& mesh, const Operator& op,
@@ -98,7 +88,7 @@ void write_spectrum(const Context& context, const TriangleMesh& mesh, const Oper
   if (format == "npz") {
     context.write_result(context.output, npz(mesh, op, found));
   } else if (format == "npy") {
-    write_arrays(context, found);
+    context.write_result(context.output, to_npy(found.vectors));
   } else {
     context.write_result(context.output, lines(found.values));
   }
@@ -106,7 +96,14 @@ void write_spectrum(const Context& context, const TriangleMesh& mesh, const Oper
 
 nlohmann::json to_json(const std::optional<Certificate>& certificate) {
   if (!certificate) return nullptr;
-  return {{"bound", certificate->bound}, {"count", certificate->count}};
+  nlohmann::json shifts = nlohmann::json::array();
+  for (const InertiaCount& count : certificate->shifts) {
+    shifts.push_back({{"component", count.component},
+                      {"shift", count.shift},
+                      {"below", count.below},
+                      {"pairs", count.pairs}});
+  }
+  return {{"bound", certificate->bound}, {"count", certificate->count}, {"shifts", shifts}};
 }
 
 std::string to_prose(const Spectrum& found, const std::string& output) {
@@ -114,8 +111,24 @@ std::string to_prose(const Spectrum& found, const std::string& output) {
   return output == "-" ? "" : "wrote " + escape_control(output) + "\n";
 }
 
+nlohmann::json describe(const std::string& mesh, const Operator& op, const Spectrum& found) {
+  return {{"mesh", mesh},
+          {"eigenvalues", std::vector<double>(found.values.begin(), found.values.end())},
+          {"zeros", found.zeros},
+          {"residual", found.residuals.maxCoeff()},
+          {"orthonormality", found.orthonormality},
+          {"certificate", to_json(found.certificate)},
+          {"operator", to_word(op.kind)},
+          {"mass", to_word(op.mass_kind)},
+          {"boundary", to_word(op.boundary)},
+          {"area", op.area},
+          {"flips", op.flips},
+          {"components_left_out", op.components_left_out},
+          {"mollified_by", op.mollified_by}};
+}
+
 void run(const Arguments& args, const Context& context) {
-  require_outputs(context);
+  require_outputs(args, context);
   Stopwatch watch;
   nlohmann::json timings;
   const MeshFile file = load_mesh(context, args.mesh);
@@ -133,30 +146,24 @@ void run(const Arguments& args, const Context& context) {
   }
   SpectrumOptions options = args.spectrum;
   options.progress = context.progress();
-  const Spectrum found = for_file(args.mesh, [&] { return compute_spectrum(op, options); });
+  const Spectrum found = for_file(args.mesh, [&] {
+    return is_streamed(context) ? stream_spectrum(context, op, options, args.stream)
+                                : compute_spectrum(op, options);
+  });
   timings["spectrum"] = watch.lap();
   if (found.values.size() < options.count) {
     context.note(args.mesh + ": has only " + std::to_string(found.values.size()) +
                  " eigenpairs, one for each row of its matrices");
   }
-  if (!context.output.empty()) write_spectrum(context, file.mesh, op, found);
-
-  const std::vector<double> values(found.values.begin(), found.values.end());
-  context.answer({{"mesh", args.mesh},
-                  {"eigenvalues", values},
-                  {"zeros", found.zeros},
-                  {"residual", found.residuals.maxCoeff()},
-                  {"orthonormality", found.orthonormality},
-                  {"certificate", to_json(found.certificate)},
-                  {"operator", to_word(op.kind)},
-                  {"mass", to_word(op.mass_kind)},
-                  {"boundary", to_word(op.boundary)},
-                  {"area", op.area},
-                  {"flips", op.flips},
-                  {"components_left_out", op.components_left_out},
-                  {"mollified_by", op.mollified_by},
-                  {"timings", timings}},
-                 to_prose(found, context.output));
+  nlohmann::json document = describe(args.mesh, op, found);
+  if (is_streamed(context)) {
+    context.write_result(values_path(context.output), to_npy(found.values));
+    context.write_result(document_path(context.output), document.dump(2) + "\n");
+  } else if (!context.output.empty()) {
+    write_spectrum(context, file.mesh, op, found);
+  }
+  document["timings"] = timings;
+  context.answer(std::move(document), to_prose(found, context.output));
 }
 
 }  // namespace
@@ -174,12 +181,18 @@ void add_spectrum(CLI::App& timbre, Context& context) {
       ->capture_default_str()
       ->check(number_between(1e-14, 1.0));
   command.add_flag("!--no-certify", args->spectrum.certify, "skip the proof that none is missing");
+  command.add_flag_callback(
+      "--float32", [args] { args->stream.type = ElementType::float32; },
+      "eigenfunctions of F.npy in single precision");
+  command.add_flag("--resume", args->stream.resume, "go on with an unfinished F.npy");
   add_read_options(command, context);
   add_common_options(command, context, true);
   command.footer(
       "Without -o the eigenvalues are printed, one a line. F.npz holds mesh, matrices and\n"
-      "eigenpairs; F.npy the eigenfunctions, with F.evals.npy beside it.\n"
-      "Example:\n  timbre spectrum horse.ply -k 200 -o horse.npz");
+      "eigenpairs. F.npy takes the eigenfunctions as they are found, more than fit into memory;\n"
+      "F.evals.npy and F.json, with the certificate, come beside it.\n"
+      "Examples:\n  timbre spectrum horse.ply -k 200 -o horse.npz\n"
+      "  timbre spectrum horse.ply -k 5000 --float32 -o horse.npy");
   command.callback([args, &context] { run(*args, context); });
 }
 

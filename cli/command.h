@@ -72,7 +72,8 @@ auto for_file(const std::string& path, Work&& work) {
 /// no other file gets their numbers, and reading or writing them stays an error.
 void hold_standard_streams();
 
-/// Ctrl-C sets a flag, which `Context::progress` hands to running computations.
+/// Ctrl-C sets a flag, which `Context::progress` hands to running computations. Closed pipes and
+/// limits on file sizes do not end the process.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
 

@@ -146,8 +146,9 @@ void run(const Arguments& args, const Context& context) {
   }
   SpectrumOptions options = args.spectrum;
   options.progress = context.progress();
+  const auto document_of = [&](const Spectrum& found) { return describe(args.mesh, op, found); };
   const Spectrum found = for_file(args.mesh, [&] {
-    return is_streamed(context) ? stream_spectrum(context, op, options, args.stream)
+    return is_streamed(context) ? stream_spectrum(context, op, options, args.stream, document_of)
                                 : compute_spectrum(op, options);
   });
   timings["spectrum"] = watch.lap();
@@ -155,13 +156,10 @@ void run(const Arguments& args, const Context& context) {
     context.note(args.mesh + ": has only " + std::to_string(found.values.size()) +
                  " eigenpairs, one for each row of its matrices");
   }
-  nlohmann::json document = describe(args.mesh, op, found);
-  if (is_streamed(context)) {
-    context.write_result(values_path(context.output), to_npy(found.values));
-    context.write_result(document_path(context.output), document.dump(2) + "\n");
-  } else if (!context.output.empty()) {
+  if (!context.output.empty() && !is_streamed(context)) {
     write_spectrum(context, file.mesh, op, found);
   }
+  nlohmann::json document = document_of(found);
   document["timings"] = timings;
   context.answer(std::move(document), to_prose(found, context.output));
 }

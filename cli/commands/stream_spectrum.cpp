@@ -27,6 +27,9 @@ std::string beside(const std::string& output, const char* ending) {
   return output.substr(0, output.size() - 4) + ending;
 }
 
+std::string values_path(const std::string& output) { return beside(output, ".evals.npy"); }
+std::string document_path(const std::string& output) { return beside(output, ".json"); }
+
 void write_bands(const Context& context, SpectrumStream& stream, ColumnFile& file) {
   const std::string state = state_path(context.output);
   for (;;) {
@@ -39,14 +42,13 @@ void write_bands(const Context& context, SpectrumStream& stream, ColumnFile& fil
 
 }  // namespace
 
-std::string values_path(const std::string& output) { return beside(output, ".evals.npy"); }
-std::string document_path(const std::string& output) { return beside(output, ".json"); }
-
 void require_stream_can_begin(const Context& context, const StreamOptions& options) {
   for (const std::string& path : {values_path(context.output), document_path(context.output)}) {
-    require_writable(path, context.force);
+    require_writable(path, context.force || options.resume);
   }
   const std::string state = state_path(context.output);
+  // Killed after the last step but one.
+  if (!exists(ColumnFile::unfinished(context.output))) remove(state);
   if (options.resume && !exists(state)) {
     throw Error(ErrorKind::bad_request, context.output, "resume",
                 "there is nothing to go on with: no " + state);
@@ -58,7 +60,8 @@ void require_stream_can_begin(const Context& context, const StreamOptions& optio
 }
 
 Spectrum stream_spectrum(const Context& context, const Operator& op,
-                         const SpectrumOptions& spectrum, const StreamOptions& options) {
+                         const SpectrumOptions& spectrum, const StreamOptions& options,
+                         const Describe& describe) {
   const std::string state = state_path(context.output);
   SpectrumStream stream(op, spectrum);
   if (options.resume) {
@@ -73,6 +76,9 @@ Spectrum stream_spectrum(const Context& context, const Operator& op,
   try {
     write_bands(context, stream, file);
     const Spectrum found = stream.finish();
+    const bool overwrite = context.force || options.resume;  // those of a run that was killed
+    write_file(values_path(context.output), to_npy(found.values), overwrite);
+    write_file(document_path(context.output), describe(found).dump(2) + "\n", overwrite);
     file.commit(context.force);
     remove(state);
     return found;

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <string>
+#include <functional>
+#include <nlohmann/json.hpp>
 
 #include "timbre/analysis/core/array_file.h"
 #include "timbre/analysis/operators/operator.h"
@@ -14,18 +15,18 @@ struct StreamOptions {
   bool resume = false;                      ///< go on with an unfinished file
 };
 
-/// What goes beside F.npy: eigenvalues in F.evals.npy, the certificate in F.json.
-[[nodiscard]] std::string values_path(const std::string& output);
-[[nodiscard]] std::string document_path(const std::string& output);
+/// The document that goes into F.json.
+using Describe = std::function<nlohmann::json(const Spectrum&)>;
 
 /// To be called before any work: refuses what `stream_spectrum` could not begin.
 void require_stream_can_begin(const Context& context, const StreamOptions& options);
 
 /// Computes eigenpairs and writes the eigenfunctions to `context.output`, F.npy, as they are
 /// found. Until all are there they are in F.npy.unfinished, and what is needed to go on after an
-/// interrupt or a crash in F.npy.state. The result is as of SpectrumStream::finish.
+/// interrupt or a crash in F.npy.state. Beside it come eigenvalues in F.evals.npy and, with the
+/// certificate, F.json. The result is as of SpectrumStream::finish.
 [[nodiscard]] Spectrum stream_spectrum(const Context& context, const Operator& op,
                                        const SpectrumOptions& spectrum,
-                                       const StreamOptions& options);
+                                       const StreamOptions& options, const Describe& describe);
 
 }  // namespace timbre::cli

@@ -68,7 +68,7 @@ class Files(Results):
             self.run_timbre(command, self.mesh, "-k", "9", "-o", out, "--force")
             self.assertNotEqual(pathlib.Path(out).read_text(), "old")
 
-    def test_of_two_files_both_or_none_are_written(self):
+    def test_of_three_files_all_or_none_are_written(self):
         out, values = self.path("a.npy"), self.path("a.evals.npy")
         for taken, free in ((out, values), (values, out)):
             pathlib.Path(taken).write_text("old")
@@ -76,12 +76,12 @@ class Files(Results):
             self.assertFalse(os.path.exists(free))
             os.remove(taken)
         self.run_timbre("spectrum", self.mesh, "-k", "9", "-o", out)
-        self.assertEqual(self.names(), ["a.evals.npy", "a.npy", "torus.off"])
+        self.assertEqual(self.names(), ["a.evals.npy", "a.json", "a.npy", "torus.off"])
         # The second file is too large for what the shell allows.
         small = 'trap "" XFSZ; ulimit -f 8; "$0" spectrum "$1" -k 20 -o "$2"'
         done = self.shell(small, self.mesh, self.path("b.npy"), code=1)
         self.assertIn(b"b.npy: write: File too large", done.stderr)
-        self.assertEqual(self.names(), ["a.evals.npy", "a.npy", "torus.off"])
+        self.assertEqual(self.names(), ["a.evals.npy", "a.json", "a.npy", "torus.off"])
 
     def test_force_writes_through_a_link_and_keeps_the_mode(self):
         real = pathlib.Path(self.put("real.txt", "old"))

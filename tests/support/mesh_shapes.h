@@ -147,6 +147,20 @@ inline TriangleMesh sphere(int levels) {
   return make_mesh(vertices, faces);
 }
 
+/// Several meshes as one, in the order given.
+inline TriangleMesh joined(const std::vector<TriangleMesh>& parts) {
+  TriangleMesh all;
+  for (const TriangleMesh& part : parts) {
+    const Eigen::Index n = all.vertices.rows();
+    const Eigen::Index m = all.faces.rows();
+    all.vertices.conservativeResize(n + part.vertices.rows(), 3);
+    all.faces.conservativeResize(m + part.faces.rows(), 3);
+    all.vertices.bottomRows(part.vertices.rows()) = part.vertices;
+    all.faces.bottomRows(part.faces.rows()) = part.faces.array() + static_cast<std::int32_t>(n);
+  }
+  return all;
+}
+
 /// Twice the area, summed over the triangles; signed along z.
 inline double twice_signed_area_z(const TriangleMesh& mesh) {
   double sum = 0.0;

@@ -27,19 +27,6 @@ using Eigen::VectorXd;
 
 constexpr int kCount = 30;
 
-TriangleMesh joined(const std::vector<TriangleMesh>& parts) {
-  TriangleMesh all;
-  for (const TriangleMesh& part : parts) {
-    const Index n = all.vertices.rows();
-    const Index m = all.faces.rows();
-    all.vertices.conservativeResize(n + part.vertices.rows(), 3);
-    all.faces.conservativeResize(m + part.faces.rows(), 3);
-    all.vertices.bottomRows(part.vertices.rows()) = part.vertices;
-    all.faces.bottomRows(part.faces.rows()) = part.faces.array() + static_cast<std::int32_t>(n);
-  }
-  return all;
-}
-
 TriangleMesh with_repeats_and_strays(TriangleMesh mesh) {
   const Index n = mesh.vertices.rows();
   const Index m = mesh.faces.rows();

@@ -38,7 +38,7 @@ for line in sorted(commands):
     if text is None:
         problems.append(f"'timbre {line}': no such command")
         continue
-    for option in re.findall(r"(?<!\S)--?[a-z][a-z-]*", line):
+    for option in re.findall(r"(?<!\S)--?[a-z][a-z0-9-]*", line):
         if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", text):
             problems.append(f"'timbre {line}': {' '.join(name)} has no {option}")
 

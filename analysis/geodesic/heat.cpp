@@ -154,16 +154,8 @@ struct HeatGeodesics::Impl {
     }
   }
 
-  [[nodiscard]] VectorXd flow(std::span<const std::int32_t> sources) {
-    VectorXd start = VectorXd::Zero(size());
-    for (const std::int32_t v : sources) start[v] = 1.0;
-    VectorXd result(size());
-    heat->solve(start.data(), result.data());
-    require_heat_everywhere(result, sources);
-    return result;
-  }
-
-  void require_heat_everywhere(const VectorXd& found, std::span<const std::int32_t> sources) const {
+  void require_heat_everywhere(const Eigen::Ref<const VectorXd>& found,
+                               std::span<const std::int32_t> sources) const {
     const std::vector<bool> reached = components_of(sources);
     for (Index v = 0; v < size(); ++v) {
       const std::int32_t c = component[static_cast<std::size_t>(v)];
@@ -205,7 +197,7 @@ struct HeatGeodesics::Impl {
   double unit = 1.0;
   std::vector<std::int32_t> component;
   std::vector<FlatTriangle> triangles;
-  std::optional<Factorization> heat;
+  std::optional<Factorization> heat;  // with the steps of time in it
   std::optional<Factorization> poisson;
 };
 
@@ -229,16 +221,23 @@ MatrixXd HeatGeodesics::distances(std::span<const std::vector<std::int32_t>> sou
   const auto set = [&](Index i) -> const std::vector<std::int32_t>& {
     return source_sets[static_cast<std::size_t>(i)];
   };
-  // The factors take one right-hand side at a time; what is between is shared out.
-  for (Index i = 0; i < count; ++i) columns.col(i) = impl_->flow(set(i));
-  parallel_for(count, threads, [&](std::int64_t i) {
-    columns.col(i) = divergence_of_direction(impl_->triangles, columns.col(i));
+  constexpr Index kTogether = 32;  // right-hand sides, which the factors take at once
+  parallel_for((count + kTogether - 1) / kTogether, threads, [&](std::int64_t chunk) {
+    const Index first = chunk * kTogether;
+    const Index last = std::min(first + kTogether, count);
+    auto some = columns.middleCols(first, last - first);
+    some.setZero();
+    for (Index i = first; i < last; ++i) {
+      for (const std::int32_t v : set(i)) columns(v, i) = 1.0;
+    }
+    impl_->heat->solve(some);
+    for (Index i = first; i < last; ++i) {
+      impl_->require_heat_everywhere(columns.col(i), set(i));
+      columns.col(i) = divergence_of_direction(impl_->triangles, columns.col(i));
+    }
+    impl_->poisson->solve(some);
+    for (Index i = first; i < last; ++i) impl_->finish(columns.col(i), set(i));
   });
-  for (Index i = 0; i < count; ++i) {
-    const VectorXd right = columns.col(i);
-    impl_->poisson->solve(right.data(), columns.col(i).data());
-  }
-  parallel_for(count, threads, [&](std::int64_t i) { impl_->finish(columns.col(i), set(i)); });
   return columns;
 }
 

@@ -1,48 +1,40 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <memory>
 
 namespace timbre {
 
-/// Which library factorises `W - s M`.
+/// Which LDL^T of the shifted matrices `W - s M` the solver runs on. Results are the same.
 enum class FactorizationBackend : std::uint8_t {
-  automatic,  ///< CHOLMOD where timbre was built with it, Eigen otherwise
-  cholmod,    ///< SuiteSparse
-  eigen,      ///< SimplicialLDLT of Eigen; always there
+  automatic,   ///< the fastest: `supernodal`
+  supernodal,  ///< of timbre: blocks of columns, pivots of 1 x 1 and 2 x 2
+  cholmod,     ///< CHOLMOD's simplicial LDL^T; its supernodal one takes no indefinite matrix
+  eigen,       ///< Eigen's SimplicialLDLT
 };
 
 /// Whether timbre was built with CHOLMOD.
 [[nodiscard]] bool has_cholmod();
 
-/// A factorised symmetric positive definite matrix.
+/// A factorised symmetric positive definite matrix, by timbre's own LDL^T.
 class Factorization {
  public:
-  /// @throws Error  not_converged if the matrix is not positive definite;
-  ///                bad_request for a backend that this build lacks
-  explicit Factorization(const Eigen::SparseMatrix<double>& matrix,
-                         FactorizationBackend backend = FactorizationBackend::automatic);
+  /// @param matrix  n x n, of which the lower triangle is read
+  /// @throws Error  not_converged if the matrix is not positive definite
+  explicit Factorization(const Eigen::SparseMatrix<double>& matrix);
   ~Factorization();
   Factorization(Factorization&&) noexcept;
   Factorization& operator=(Factorization&&) noexcept;
 
-  /// x = A^-1 b; both of the matrix's size. One call at a time.
-  void solve(const double* b, double* x);
-
-  struct Impl;  ///< one per library, in the .cpp
+  /// X := A^-1 X, for n x b numbers with any b: cheapest by columns in multiples of 32. May be
+  /// called from several threads at once.
+  void solve(Eigen::Ref<Eigen::MatrixXd> X) const;
 
  private:
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Number of negative eigenvalues of a symmetric, indefinite matrix: the negative
-/// pivots of its LDL^T, by Sylvester's law of inertia. For `W - s M` that is the
-/// number of eigenvalues of the pencil below s.
-///
-/// @throws Error  not_converged if a pivot is 0 to rounding, as when s is an eigenvalue
-[[nodiscard]] std::int64_t count_negative_eigenvalues(
-    const Eigen::SparseMatrix<double>& matrix,
-    FactorizationBackend backend = FactorizationBackend::automatic);
 
 }  // namespace timbre

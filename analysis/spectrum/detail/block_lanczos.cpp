@@ -17,10 +17,10 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-BlockLanczos::BlockLanczos(const SupernodalLdlt& ldlt, LanczosOptions options)
-    : ldlt_(ldlt),
+BlockLanczos::BlockLanczos(const ShiftedFactor& factor, LanczosOptions options)
+    : factor_(factor),
       options_(std::move(options)),
-      mass_(ldlt.pencil()),
+      mass_(factor.pencil()),
       basis_(mass_.size(), options_.width, best_instruction_set()),
       locked_(mass_.size(), options_.width, best_instruction_set()),
       U_(basis_.new_block()),
@@ -28,7 +28,7 @@ BlockLanczos::BlockLanczos(const SupernodalLdlt& ldlt, LanczosOptions options)
       projected_(options_.width) {}
 
 void BlockLanczos::solve(AlignedArray& X) {
-  ldlt_.solve_in_factor_order(X.data(), options_.width);
+  factor_.solve_in_factor_order(X.data(), options_.width);
   if (options_.on_solve) options_.on_solve(options_.width);
 }
 
@@ -193,7 +193,7 @@ void BlockLanczos::for_each_rows(const MatrixXd& coefficients, Write write) cons
 
 void BlockLanczos::write_vectors(int first, int count, double* X, std::int64_t stride) const {
   if (count == 0) return;
-  const std::vector<int>& order = ldlt_.symbolic().order;
+  const std::vector<int>& order = factor_.order();
   for_each_rows(coefficients(first, count), [&](int row, const MatrixXd& vectors) {
     for (Index k = 0; k < vectors.cols(); ++k) {
       double* const column = X + k * stride;

@@ -7,7 +7,7 @@
 
 #include "timbre/analysis/spectrum/detail/banded_eigenproblem.h"
 #include "timbre/analysis/spectrum/detail/block_basis.h"
-#include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
+#include "timbre/analysis/spectrum/detail/shifted_factor.h"
 
 namespace timbre::detail {
 
@@ -45,8 +45,8 @@ struct BandPairs {
 /// two of three blocks' predecessors in full: one skipped step at a time costs no digit.
 class BlockLanczos {
  public:
-  /// @param ldlt  factorised at the shift of the next run; must outlive this
-  BlockLanczos(const SupernodalLdlt& ldlt, LanczosOptions options);
+  /// @param factor  factorised at the shift of the next run; must outlive this
+  BlockLanczos(const ShiftedFactor& factor, LanczosOptions options);
 
   /// Runs until the goal is reached, or `most_blocks`.
   /// @param shift  that of the factor
@@ -77,7 +77,7 @@ class BlockLanczos {
   template <typename Write>
   void for_each_rows(const Eigen::MatrixXd& coefficients, Write write) const;
 
-  const SupernodalLdlt& ldlt_;
+  const ShiftedFactor& factor_;
   LanczosOptions options_;
   BlockMass mass_;
   BlockBasis basis_;

@@ -71,6 +71,7 @@ ComponentSolver::ComponentSolver(Component component, const ComponentSolveOption
                                  .tolerance = options.tolerance,
                                  .certify = options.certify,
                                  .has_constants = component_.has_constants,
+                                 .backend = options.backend,
                                  .on_solve = options.on_solve});
 }
 
@@ -90,7 +91,7 @@ void ComponentSolver::take_over(Index certain, double bound) {
   static const std::vector<int> as_given;
   const Pencil own = slicer_ ? Pencil{} : make_pencil(component_.stiffness, component_.mass);
   const VectorXd errors = pair_errors(slicer_ ? slicer_->factor().pencil() : own,
-                                      slicer_ ? slicer_->factor().symbolic().order : as_given,
+                                      slicer_ ? slicer_->factor().order() : as_given,
                                       component_.lumped_mass, pairs(), certain_, fresh);
   errors_.insert(errors_.end(), errors.begin(), errors.end());
   check_.add(pairs(), certain_, fresh);

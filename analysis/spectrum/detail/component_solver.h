@@ -34,6 +34,7 @@ struct ComponentSolveOptions {
   Eigen::Index count = 100;  ///< pairs wanted at first
   double tolerance = 1e-9;   ///< as SlicingOptions has it
   bool certify = true;
+  FactorizationBackend backend = FactorizationBackend::automatic;
   std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
 };
 

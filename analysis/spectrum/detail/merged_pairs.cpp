@@ -62,6 +62,7 @@ MergedPairs::MergedPairs(const Operator& op, const SpectrumOptions& options)
                              ComponentSolveOptions{.count = std::min(count, wanted_),
                                                    .tolerance = 1e-3 * options.tolerance,
                                                    .certify = options.certify,
+                                                   .backend = options.backend,
                                                    .on_solve = [this](int solves) {
                                                      // An estimate; never show more than all.
                                                      solves_ = std::min(solves_ + solves,

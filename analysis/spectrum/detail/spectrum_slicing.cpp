@@ -46,11 +46,11 @@ SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
                                const SlicingOptions& options)
     : mass_(M),
       options_(options),
-      ldlt_(K, M, positions, {}),
-      lanczos_(ldlt_, {.width = block_width(options),
-                       .tolerance = options.tolerance,
-                       .most_blocks = most_blocks(options, K.rows()),
-                       .on_solve = options.on_solve}),
+      factor_(make_shifted_factor(K, M, positions, options.backend)),
+      lanczos_(*factor_, {.width = block_width(options),
+                          .tolerance = options.tolerance,
+                          .most_blocks = most_blocks(options, K.rows()),
+                          .on_solve = options.on_solve}),
       spacing_(4.0 * std::numbers::pi / M.sum()),
       pairs_(K.rows()) {
   state_.slope = spacing_;
@@ -153,7 +153,7 @@ Index SpectrumSlicer::count_at_cut() {
   constexpr std::array kPlaces = {0.0, 0.15, -0.15, 0.3, -0.3};
   for (const double place : kPlaces) {
     const double bound = state_.cut + place * state_.gap;
-    const LdltReport report = ldlt_.factorize(bound);
+    const LdltReport report = factor_->factorize(bound);
     if (report.near_singular) continue;
     state_.cut = bound;
     return static_cast<Index>(report.negative);
@@ -170,7 +170,7 @@ double SpectrumSlicer::place_shift() {
   double shift = from + (target - found) * state_.slope;
   constexpr int kTries = 12;
   for (int i = 0; i < kTries; ++i) {
-    const LdltReport report = ldlt_.factorize(shift);
+    const LdltReport report = factor_->factorize(shift);
     if (report.near_singular) {
       shift += 1e-3 * state_.slope * (1.0 + i);
       continue;
@@ -294,7 +294,7 @@ void SpectrumSlicer::repair(double shift, const BandGoal& goal, BandPairs band) 
 void SpectrumSlicer::step_back_if_cut_is_wrong(double shift) {
   if (is_cut_counted()) return;
   if (count_at_cut() != state_.found) step_back();
-  if (ldlt_.factorize(shift).negative != count_) fail("two counts at one shift differ");
+  if (factor_->factorize(shift).negative != count_) fail("two counts at one shift differ");
 }
 
 // To the last shift: everything below it is certain.

@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "timbre/analysis/mesh/triangle_mesh.h"
 #include "timbre/analysis/spectrum/detail/block_lanczos.h"
 #include "timbre/analysis/spectrum/detail/pair_window.h"
-#include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
+#include "timbre/analysis/spectrum/detail/shifted_factor.h"
 
 namespace timbre::detail {
 
@@ -21,6 +22,7 @@ struct SlicingOptions {
   bool certify = true;       ///< count at the end of the list, too
   /// The kernel of K is the constants: the first pair becomes exactly that.
   bool has_constants = false;
+  FactorizationBackend backend = FactorizationBackend::automatic;
   std::uint64_t seed = 1;                  ///< of start vectors
   std::function<void(int)> on_solve = {};  ///< after so many solves with a factor; may throw
 };
@@ -85,7 +87,7 @@ class SpectrumSlicer {
 
   [[nodiscard]] const SlicingState& state() const { return state_; }
   [[nodiscard]] const PairWindow& pairs() const { return pairs_; }  ///< up to `found`
-  [[nodiscard]] const SupernodalLdlt& factor() const { return ldlt_; }
+  [[nodiscard]] const ShiftedFactor& factor() const { return *factor_; }
 
   /// Pairs before number `first` are not asked for any more. Some of them are kept for a while.
   void forget_before(Eigen::Index first);
@@ -117,7 +119,7 @@ class SpectrumSlicer {
 
   const Eigen::SparseMatrix<double>& mass_;
   SlicingOptions options_;
-  SupernodalLdlt ldlt_;
+  std::unique_ptr<ShiftedFactor> factor_;
   BlockLanczos lanczos_;
   double spacing_;  // of eigenvalues, by Weyl's law
   PairWindow pairs_;

@@ -24,9 +24,6 @@ using Eigen::MatrixXd;
 
 // A pivot this small beside its row has lost most of its digits.
 constexpr double kSmallPivot = 1e-13;
-// An error of the factor as large as this share of the smallest eigenvalue leaves the count in
-// doubt; a factor of 100 below 1, since the random vectors see only a part of it.
-constexpr double kDoubtfulResidual = 1e-2;
 
 // Row of each entry of the pencil in the front of its column.
 std::vector<int> entry_rows(const SymbolicFactor& symbolic, const Pencil& pencil) {
@@ -228,8 +225,8 @@ LdltReport SupernodalLdlt::factorize(double shift) {
     report.backward_error = check.backward_error;
     report.residual = check.residual;
   }
-  report.near_singular = counts.replaced > 0 || !(counts.smallest > kSmallPivot) ||
-                         !(report.residual < kDoubtfulResidual);
+  report.near_singular =
+      counts.replaced > 0 || !(counts.smallest > kSmallPivot) || is_doubtful(report.residual);
   return report;
 }
 

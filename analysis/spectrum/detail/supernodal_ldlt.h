@@ -4,10 +4,12 @@
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "timbre/analysis/mesh/triangle_mesh.h"
 #include "timbre/analysis/spectrum/detail/ordering.h"
 #include "timbre/analysis/spectrum/detail/pencil.h"
+#include "timbre/analysis/spectrum/detail/shifted_factor.h"
 #include "timbre/analysis/spectrum/detail/symbolic.h"
 #include "timbre/analysis/spectrum/detail/tile_kernels.h"
 
@@ -22,24 +24,6 @@ struct LdltOptions {
   InstructionSet instructions = best_instruction_set();
 };
 
-/// What is known of one factorisation of A = K - s M.
-struct LdltReport {
-  double shift = 0.0;
-  std::int64_t negative = 0;  ///< negative eigenvalues of A, by Sylvester's law of inertia
-  /// The shift is an eigenvalue to rounding, or pivots restricted to blocks were not enough:
-  /// `negative` may be wrong and solves inexact. Move the shift.
-  bool near_singular = false;
-  std::int64_t two_by_two = 0;  ///< 2 x 2 pivots
-  std::int64_t replaced = 0;    ///< pivots that were 0 to rounding
-  double smallest_pivot = 1.0;  ///< beside the largest entry of its row in A
-  /// Largest |A x - b| / (|A| |x| + |b|) over the checked solves, in the norm in which every row
-  /// of A is scaled to 1; near 1e-16 for a stable factorisation. 0 without a check.
-  double backward_error = 0.0;
-  /// Largest |A x - b| / |b| after a step of inverse iteration, in that norm: the error of the
-  /// factor as a share of the smallest eigenvalue. The count is right while this is far below 1.
-  double residual = 0.0;
-};
-
 /// L D L^T of K - s M for one pattern and any shifts: sparse, symmetric, definite or not.
 ///
 /// Supernodal and multifrontal (Duff and Reid 1983); pivots of 1 x 1 and 2 x 2 chosen inside
@@ -52,7 +36,7 @@ struct LdltReport {
 ///     ldlt.solve(X);
 ///
 /// Solves may run on several threads at once, factorisations may not.
-class SupernodalLdlt {
+class SupernodalLdlt final : public ShiftedFactor {
  public:
   /// Orders and analyses. Lower triangles are read.
   ///
@@ -62,12 +46,11 @@ class SupernodalLdlt {
   /// @throws Error  bad_request if sizes differ, or as compute_ordering says
   SupernodalLdlt(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& M,
                  const Points* positions = nullptr, const LdltOptions& options = {});
-  ~SupernodalLdlt();
+  ~SupernodalLdlt() override;
   SupernodalLdlt(SupernodalLdlt&&) noexcept;
   SupernodalLdlt& operator=(SupernodalLdlt&&) noexcept;
 
-  /// Factorises K - shift M, in place of what was factorised before.
-  LdltReport factorize(double shift);
+  LdltReport factorize(double shift) override;
 
   /// X := (K - s M)^-1 X for the last shift.
   ///
@@ -75,14 +58,11 @@ class SupernodalLdlt {
   /// @throws Error  bad_request before the first factorisation, or for another number of rows
   void solve(Eigen::Ref<Eigen::MatrixXd> X) const;
 
-  /// The same where row i of X belongs to unknown symbolic().order[i]: no copy, no permutation.
-  ///
-  /// @param X      n x width, row-major, best aligned to 64 bytes
-  /// @param width  8, 16 or 32
-  void solve_in_factor_order(double* X, int width) const;
+  void solve_in_factor_order(double* X, int width) const override;
 
   [[nodiscard]] const SymbolicFactor& symbolic() const;
-  [[nodiscard]] const Pencil& pencil() const;  ///< K and M in factor order
+  [[nodiscard]] const std::vector<int>& order() const override { return symbolic().order; }
+  [[nodiscard]] const Pencil& pencil() const override;
   /// Bytes of the factor and the workspace of `factorize`; known before the first one.
   [[nodiscard]] std::int64_t bytes() const;
 

@@ -22,7 +22,7 @@ def text(x, y, words, colour=INK, anchor="start", weight="normal"):
 
 
 def line(x0, y0, x1, y1, colour):
-    return (f'<line x1="{x0:.1f}" y1="{y0:.1f}" x2="{x1:.1f}" y2="{y1:.1f}" stroke="{colour}"/>')
+    return f'<line x1="{x0:.1f}" y1="{y0:.1f}" x2="{x1:.1f}" y2="{y1:.1f}" stroke="{colour}"/>'
 
 
 def mark(x, y, colour, at_least):
@@ -57,7 +57,7 @@ def draw_row(dot, reference, x_of, y, accent):
 def draw_axis(first, last, x_of, bottom, unit):
     for power in range(first, last + 1):
         x = x_of(10.0 ** power)
-        yield line(x, TOP - 6, x, bottom, GRID)
+        yield line(x, TOP, x, bottom, GRID)
         yield text(x, bottom + 16, f"{10.0 ** power:g} {unit}", anchor="middle")
 
 
@@ -70,7 +70,7 @@ def dot_plot(heading, groups, unit):
 
     rows, y = [], TOP
     for title, dots in groups:
-        rows.append(text(LABELS - 12, y + 20, title, anchor="end", weight="bold"))
+        rows.append(text(12, y + 20, title, weight="bold"))
         y += TITLE
         for dot in dots:
             rows += draw_row(dot, dots[0].value, x_of, y + ROW / 2, dot is dots[0])
@@ -80,5 +80,5 @@ def dot_plot(heading, groups, unit):
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
         f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
         f'<rect width="{width}" height="{height}" fill="white"/>',
-        text(LABELS, 20, heading, weight="bold"),
+        text(12, 20, heading, weight="bold"),
         *draw_axis(first, last, x_of, y + 4, unit), *rows, "</svg>", ""])

@@ -79,6 +79,7 @@ def dot_plot(heading, groups, unit):
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
         f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
+        "<style>text { paint-order: stroke; stroke: white; stroke-width: 3px }</style>",
         f'<rect width="{width}" height="{height}" fill="white"/>',
         text(12, 20, heading, weight="bold"),
         *draw_axis(first, last, x_of, y + 4, unit), *rows, "</svg>", ""])

@@ -199,7 +199,7 @@ def table_line(cells):
 
 
 def to_markdown(results):
-    header = ["", "CPU s", "of timbre", "peak MB", "residual", "orthonormal to",
+    header = ["", "CPU s", "ratio", "peak MB", "residual", "orthonormal to",
               "values differ by"]
     lines = []
     for result in results:

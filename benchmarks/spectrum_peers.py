@@ -111,17 +111,19 @@ def check(W, M, folder):
     values = np.load(folder / "found.values.npy").ravel()
     vectors = np.load(folder / "found.vectors.npy", mmap_mode="r")
     lumped = np.asarray(M.sum(axis=1)).ravel()
-    residual = orthonormality = 0.0
+    residuals, deviations = [], []
     for first in range(0, len(values), COLUMNS_AT_ONCE):
         columns = slice(first, first + COLUMNS_AT_ONCE)
         X, l = vectors[:, columns], values[columns]
         MX = M @ X
         errors = np.sqrt(np.sum((W @ X - MX * l) ** 2 / lumped[:, None], axis=0))
         norms = np.sqrt(np.sum(X * MX, axis=0))
-        residual = max(residual, np.max(errors / ((np.abs(l) + values.max()) * norms)))
+        residuals.append(np.max(errors / ((np.abs(l) + values.max()) * norms)))
         gram = vectors.T @ MX - np.eye(len(values), len(l), -first)
-        orthonormality = max(orthonormality, np.max(np.abs(gram)))
-    return {"values": np.sort(values), "residual": residual, "orthonormality": orthonormality}
+        deviations.append(np.max(np.abs(gram)))
+    # Maxima of numpy, which NaN passes through.
+    return {"values": np.sort(values), "residual": np.max(residuals),
+            "orthonormality": np.max(deviations)}
 
 
 def run_and_check(solver, W, M, folder, count, options):
@@ -230,12 +232,10 @@ def write_answers(options, results):
     version = call_timbre(options.build, "--version").splitlines()[0]
     answer = {"timbre": version, "scipy": scipy.__version__, "numpy": np.__version__,
               "mass": options.mass, "rounds": options.rounds, "cases": results}
-    table = to_markdown(results)
     stem = options.output / "spectrum_peers"
     stem.with_suffix(".json").write_text(json.dumps(answer, indent=1) + "\n")
-    stem.with_suffix(".md").write_text(table, encoding="utf-8")
+    stem.with_suffix(".md").write_text(to_markdown(results), encoding="utf-8")
     stem.with_suffix(".svg").write_text(to_plot(results), encoding="utf-8")
-    print(table, end="")
 
 
 # ---- Command line
@@ -277,7 +277,11 @@ def parse_options():
 
 def main():
     options = parse_options()
-    write_answers(options, [run_case(shape, count, options) for shape, count in options.cases])
+    results = []
+    for shape, count in options.cases:
+        results.append(run_case(shape, count, options))
+        write_answers(options, results)  # after each: a long run may be interrupted
+    print(to_markdown(results), end="")
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 """scipy's eigsh as two packages call it, on one pair of matrices; spectrum_peers.py calls it.
 
 scipy_peers.py SOLVER FOLDER K SHIFT OUT, with the files of spectrum_peers.cpp. SOLVER:
-  pyfm  pyFM 1: eigsh inverts by itself (SuperLU)
-  lapy  LaPy 1: a factor of splu, handed to eigsh
+  pyfm  pyFM: eigsh inverts by itself (SuperLU)
+  lapy  LaPy: a factor of splu, handed to eigsh
 Both leave the tolerance at 0, full precision."""
 import json
 import sys

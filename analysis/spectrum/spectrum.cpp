@@ -1,35 +1,21 @@
 #include "timbre/analysis/spectrum/spectrum.h"
 
 #include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "timbre/analysis/core/error.h"
-#include "timbre/analysis/core/huge_pages.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/analysis/spectrum/detail/merged_pairs.h"
 
 namespace timbre {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 
 Spectrum compute_spectrum(const Operator& op, const SpectrumOptions& options) {
   const SingleThreadedBlas blas;
-  detail::MergedPairs merged(op, options);
-  MatrixXd vectors(op.stiffness.rows(), merged.wanted());
-  prefer_huge_pages(vectors.data(), static_cast<std::size_t>(vectors.size()) * sizeof(double));
-  Index column = 0;
-  for (;;) {
-    const std::vector<detail::MergedPair> band = merged.next();
-    if (band.empty()) break;
-    for (const detail::MergedPair& pair : band) {
-      merged.write_vector(pair, vectors.col(column++).data());
-    }
+  detail::MergedPairs merged(op, options, detail::MergedPairs::Vectors::keep);
+  while (!merged.next().empty()) {
   }
   Spectrum found = merged.finish();
-  found.vectors = std::move(vectors);
+  found.vectors = merged.release_vectors();
   return found;
 }
 

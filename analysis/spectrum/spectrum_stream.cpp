@@ -46,7 +46,7 @@ Sha256Digest digest_of(const Operator& op, const SpectrumOptions& options) {
 
 struct SpectrumStream::Impl {
   Impl(const Operator& given, const SpectrumOptions& chosen)
-      : op(given), options(chosen), merged(given, chosen) {}
+      : op(given), options(chosen), merged(given, chosen, detail::MergedPairs::Vectors::forget) {}
 
   const Sha256Digest& owner() {
     if (!digest) digest = digest_of(op, options);

@@ -54,9 +54,9 @@ BlockBasis::BlockBasis(int size, int width, InstructionSet instructions)
 
 std::size_t BlockBasis::numbers() const { return at(size_) * at(width_); }
 
-void BlockBasis::push_back(AlignedArray& block) {
-  if (used_ == static_cast<int>(blocks_.size())) blocks_.push_back(new_block());
-  std::swap(blocks_[at(used_++)], block);
+double* BlockBasis::next() {
+  if (at(used_) == slabs_.size() * kBlocksInSlab) slabs_.emplace_back(kBlocksInSlab * numbers());
+  return const_cast<double*>(place(used_));
 }
 
 template <typename Visit>

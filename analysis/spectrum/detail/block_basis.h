@@ -47,11 +47,11 @@ class BlockBasis {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int blocks() const { return used_; }
   [[nodiscard]] std::size_t numbers() const;  ///< in a block
-  [[nodiscard]] AlignedArray new_block() const { return AlignedArray(numbers()); }
-  [[nodiscard]] const double* block(int j) const { return blocks_[at(j)].data(); }
+  [[nodiscard]] const double* block(int j) const { return place(j); }
 
-  /// Takes a block over and leaves another in its place, with any content.
-  void push_back(AlignedArray& block);
+  /// Where the next block is to be written, and what makes it part of the basis.
+  [[nodiscard]] double* next();
+  void append_next() { ++used_; }
   void clear() { used_ = 0; }  ///< keeps the memory
 
   /// H = V^T Z for the blocks [first, blocks()): one square for each, below each other.
@@ -70,13 +70,18 @@ class BlockBasis {
 
  private:
   static std::size_t at(int j) { return static_cast<std::size_t>(j); }
+  [[nodiscard]] const double* place(int j) const {
+    return slabs_[at(j / kBlocksInSlab)].data() + at(j % kBlocksInSlab) * numbers();
+  }
   template <typename Visit>
   void for_each_chunk(Visit visit) const;
 
   int size_;
   int width_;
   const BlockKernels& kernels_;
-  std::vector<AlignedArray> blocks_;
+  // Blocks lie in slabs of several, so that hardly any of them begins or ends inside a large page.
+  static constexpr int kBlocksInSlab = 8;
+  std::vector<AlignedArray> slabs_;
   int used_ = 0;
 };
 

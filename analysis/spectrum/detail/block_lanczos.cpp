@@ -23,12 +23,11 @@ BlockLanczos::BlockLanczos(const ShiftedFactor& factor, LanczosOptions options)
       mass_(factor.pencil()),
       basis_(mass_.size(), options_.width, best_instruction_set()),
       locked_(mass_.size(), options_.width, best_instruction_set()),
-      U_(basis_.new_block()),
-      Z_(basis_.new_block()),
+      Z_(basis_.numbers()),
       projected_(options_.width) {}
 
-void BlockLanczos::solve(AlignedArray& X) {
-  factor_.solve_in_factor_order(X.data(), options_.width);
+void BlockLanczos::solve(double* X) {
+  factor_.solve_in_factor_order(X, options_.width);
   if (options_.on_solve) options_.on_solve(options_.width);
 }
 
@@ -36,22 +35,23 @@ void BlockLanczos::solve(AlignedArray& X) {
 void BlockLanczos::start() {
   basis_.clear();
   projected_.clear();
+  double* const U = basis_.next();
   std::mt19937_64 random(memory_.seed++);
   for (int i = 0; i < mass_.size(); ++i) {
     const double scale = std::sqrt(std::abs(mass_.diagonal(i)));
-    double* const row = U_.data() + at(i) * at(options_.width);
+    double* const row = U + at(i) * at(options_.width);
     for (int c = 0; c < options_.width; ++c) {
       row[c] = scale * (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
     }
   }
-  solve(U_);
+  solve(U);
   for (int pass = 0; pass < 2; ++pass) {
-    mass_.multiply(U_.data(), options_.width, Z_.data());
-    locked_.subtract(locked_.products(Z_.data()), U_.data());
-    mass_.multiply(U_.data(), options_.width, Z_.data());
-    (void)basis_.orthonormalise(U_.data(), Z_.data());
+    mass_.multiply(U, options_.width, Z_.data());
+    locked_.subtract(locked_.products(Z_.data()), U);
+    mass_.multiply(U, options_.width, Z_.data());
+    (void)basis_.orthonormalise(U, Z_.data());
   }
-  basis_.push_back(U_);
+  basis_.append_next();
 }
 
 // Z holds M V_j. What the recurrence knows is taken off first, so that one pass over all blocks is
@@ -62,24 +62,25 @@ void BlockLanczos::step() {
   constexpr double kMostDrift = 1e-5;
   const int P = options_.width;
   const int j = basis_.blocks() - 1;
-  std::copy_n(Z_.data(), basis_.numbers(), U_.data());
-  solve(U_);
-  if (j > 0) basis_.subtract(basis_.block(j - 1), last_factor_.transpose(), U_.data());
-  Square diagonal = basis_.gram(Z_.data(), U_.data());
-  basis_.subtract(basis_.block(j), diagonal, U_.data());
+  double* const U = basis_.next();
+  std::copy_n(Z_.data(), basis_.numbers(), U);
+  solve(U);
+  if (j > 0) basis_.subtract(basis_.block(j - 1), last_factor_.transpose(), U);
+  Square diagonal = basis_.gram(Z_.data(), U);
+  basis_.subtract(basis_.block(j), diagonal, U);
 
   const bool is_skipped =
       j >= 4 && j % kPeriod == kPeriod - 1 && locked_.blocks() == 0 && !full_passes_only_;
   const int first = is_skipped ? j - 1 : 0;
   Square coupling = Square::Identity(P, P);
   for (int pass = 0; pass < kPasses; ++pass) {
-    mass_.multiply(U_.data(), P, Z_.data());
-    if (locked_.blocks() > 0) locked_.subtract(locked_.products(Z_.data()), U_.data());
+    mass_.multiply(U, P, Z_.data());
+    if (locked_.blocks() > 0) locked_.subtract(locked_.products(Z_.data()), U);
     const Square H = basis_.products(Z_.data(), first);
-    basis_.subtract(H, U_.data(), first);
+    basis_.subtract(H, U, first);
     if (pass == 0) diagonal += H.bottomRows(P);
-    mass_.multiply(U_.data(), P, Z_.data());
-    const BlockFactor factor = basis_.orthonormalise(U_.data(), Z_.data());
+    mass_.multiply(U, P, Z_.data());
+    const BlockFactor factor = basis_.orthonormalise(U, Z_.data());
     coupling = factor.R * coupling;
     const double removed = H.cwiseAbs().maxCoeff();
     const double left = factor.R.diagonal().maxCoeff();
@@ -89,7 +90,7 @@ void BlockLanczos::step() {
   if (drift_ > kMostDrift) full_passes_only_ = true;
   projected_.append(last_factor_, Square(0.5 * (diagonal + diagonal.transpose())));
   last_factor_ = coupling;
-  basis_.push_back(U_);
+  basis_.append_next();
 }
 
 bool BlockLanczos::try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing) {
@@ -208,13 +209,13 @@ void BlockLanczos::lock(int first, int count) {
   const int P = options_.width;
   for (int done = 0; done < count; done += P) {
     const int some = std::min(P, count - done);
-    AlignedArray block = basis_.new_block();
-    std::fill_n(block.data(), basis_.numbers(), 0.0);
+    double* const block = locked_.next();
+    std::fill_n(block, locked_.numbers(), 0.0);
     for_each_rows(coefficients(first + done, some), [&](int row, const MatrixXd& vectors) {
-      Eigen::Map<MatrixXd> rows(block.data() + at(row) * at(P), P, vectors.rows());
+      Eigen::Map<MatrixXd> rows(block + at(row) * at(P), P, vectors.rows());
       rows.topRows(some) = vectors.transpose();
     });
-    locked_.push_back(block);
+    locked_.append_next();
   }
 }
 

@@ -71,7 +71,7 @@ class BlockLanczos {
   [[nodiscard]] BandPairs search(double shift, const BandGoal& goal, int next_test, int& tests);
   void start();
   void step();
-  void solve(AlignedArray& X);
+  void solve(double* X);
   [[nodiscard]] bool try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing);
   [[nodiscard]] Eigen::MatrixXd coefficients(int first, int count) const;
   template <typename Write>
@@ -82,7 +82,7 @@ class BlockLanczos {
   BlockMass mass_;
   BlockBasis basis_;
   BlockBasis locked_;
-  AlignedArray U_, Z_;  // the next block, and M times it
+  AlignedArray Z_;  // M times the last block
   BandedMatrix projected_;
   Square last_factor_;  // R of the last block
   BandedEigenpairs small_;

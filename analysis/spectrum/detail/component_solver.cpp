@@ -19,17 +19,21 @@ constexpr Index kDenseSize = 200;       // and below: dense
 constexpr Index kDenseIfMany = 1000;    // and below: dense if more than a quarter is wanted
 constexpr Index kGeometricCount = 150;  // and below: an ordering that is found fast pays
 
+// Rows and columns `rows`, ascending, times `scale`.
 SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32_t>& rows,
-                        const std::vector<std::int32_t>& local) {
+                        const std::vector<std::int32_t>& local, double scale) {
   const auto n = static_cast<Index>(rows.size());
   SparseMatrix part(n, n);
-  std::vector<Eigen::Triplet<double>> entries;
+  Index entries = 0;
+  for (const std::int32_t row : rows) entries += matrix.col(row).nonZeros();
+  part.reserve(entries);
   for (Index j = 0; j < n; ++j) {
+    part.startVec(j);
     for (SparseMatrix::InnerIterator it(matrix, rows[static_cast<std::size_t>(j)]); it; ++it) {
-      entries.emplace_back(local[static_cast<std::size_t>(it.row())], j, it.value());
+      part.insertBack(local[static_cast<std::size_t>(it.row())], j) = scale * it.value();
     }
   }
-  part.setFromTriplets(entries.begin(), entries.end());
+  part.finalize();
   return part;
 }
 
@@ -53,8 +57,8 @@ std::vector<Component> split_into_components(const Operator& op) {
     part.area = op.component_area[static_cast<Index>(c)];
     part.diagonal_mass = op.mass_kind != MassKind::consistent;
     part.has_constants = op.has_constants[c];
-    part.stiffness = restricted(op.stiffness, part.vertices, local);
-    part.mass = restricted(op.mass, part.vertices, local) / part.area;
+    part.stiffness = restricted(op.stiffness, part.vertices, local, 1.0);
+    part.mass = restricted(op.mass, part.vertices, local, 1.0 / part.area);
     part.lumped_mass = op.lumped_mass(part.vertices) / part.area;
     if (op.positions.rows() > 0) part.positions = op.positions(part.vertices, Eigen::all);
   }
@@ -72,6 +76,7 @@ ComponentSolver::ComponentSolver(Component component, const ComponentSolveOption
                                  .certify = options.certify,
                                  .has_constants = component_.has_constants,
                                  .backend = options.backend,
+                                 .keep_all = options.keep_all,
                                  .on_solve = options.on_solve});
 }
 
@@ -94,7 +99,8 @@ void ComponentSolver::take_over(Index certain, double bound) {
                                       slicer_ ? slicer_->factor().order() : as_given,
                                       component_.lumped_mass, pairs(), certain_, fresh);
   errors_.insert(errors_.end(), errors.begin(), errors.end());
-  check_.add(pairs(), certain_, fresh);
+  const Index before = std::max(pairs().first(), certain_ - SpectrumSlicer::kNeighbours);
+  check_.add(pairs(), before, certain_, fresh);
   certain_ = certain;
   bound_ = bound;
 }
@@ -120,6 +126,10 @@ void ComponentSolver::solve_dense() {
   }
   for (Index i = 0; i < n; ++i) dense_.value(i) = std::max(values[i], 0.0);
   if (component_.has_constants) put_constants(component_.mass, dense_, 0, n);
+}
+
+Eigen::MatrixXd ComponentSolver::release_vectors(Index count) {
+  return slicer_ ? slicer_->release_vectors(count) : dense_.release(count);
 }
 
 void ComponentSolver::forget_before(Index pair) {

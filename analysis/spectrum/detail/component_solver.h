@@ -35,6 +35,7 @@ struct ComponentSolveOptions {
   double tolerance = 1e-9;   ///< as SlicingOptions has it
   bool certify = true;
   FactorizationBackend backend = FactorizationBackend::automatic;
+  bool keep_all = false;              ///< as SlicingOptions has it
   std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
 };
 
@@ -69,6 +70,8 @@ class ComponentSolver {
   [[nodiscard]] const std::vector<SliceReport>& slices() const;
 
   void forget_before(Eigen::Index pair);
+  /// Gives the first vectors away, of a solver that has forgotten none, and ends it.
+  [[nodiscard]] Eigen::MatrixXd release_vectors(Eigen::Index count);
 
   /// To or from a StateWriter or StateReader. Dense pairs are not stored but computed again.
   template <typename File>

@@ -8,12 +8,14 @@
 #include <utility>
 
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/huge_pages.h"
 #include "timbre/analysis/core/number_text.h"
 
 namespace timbre::detail {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kGuard = 10;  // pairs of a component beyond its share
@@ -43,11 +45,17 @@ double canonical_sign(const Eigen::Ref<const VectorXd>& vector) {
   return 1.0;
 }
 
+// From the component at unit area to true scale.
+double scale_of(const Component& part, const Eigen::Ref<const VectorXd>& vector) {
+  return canonical_sign(vector) / std::sqrt(part.area);
+}
+
 }  // namespace
 
 // Weyl: a component's share of the low pairs is its share of the area.
-MergedPairs::MergedPairs(const Operator& op, const SpectrumOptions& options)
+MergedPairs::MergedPairs(const Operator& op, const SpectrumOptions& options, Vectors vectors)
     : options_(options),
+      forgets_(vectors == Vectors::forget),
       rows_(op.stiffness.rows()),
       wanted_(std::min<Index>(checked_count(op, options), used_rows(op))),
       area_(op.area),
@@ -63,6 +71,7 @@ MergedPairs::MergedPairs(const Operator& op, const SpectrumOptions& options)
                                                    .tolerance = 1e-3 * options.tolerance,
                                                    .certify = options.certify,
                                                    .backend = options.backend,
+                                                   .keep_all = !forgets_,
                                                    .on_solve = [this](int solves) {
                                                      // An estimate; never show more than all.
                                                      solves_ = std::min(solves_ + solves,
@@ -114,7 +123,7 @@ void MergedPairs::forget_handed_on() {
 }
 
 std::vector<MergedPair> MergedPairs::next() {
-  forget_handed_on();
+  if (forgets_) forget_handed_on();
   const Index missing = wanted_ - handed_on();
   if (missing == 0) return {};
   std::vector<MergedPair> ready = known();
@@ -128,11 +137,26 @@ std::vector<MergedPair> MergedPairs::next() {
 void MergedPairs::write_vector(const MergedPair& pair, double* column) const {
   const Component& part = components_[pair.component].component();
   const auto vector = components_[pair.component].pairs().vectors(pair.pair, 1).col(0);
-  const double scale = canonical_sign(vector) / std::sqrt(part.area);
+  const double scale = scale_of(part, vector);
   if (part.size() < rows_) std::fill_n(column, rows_, 0.0);
   for (Index i = 0; i < part.size(); ++i) {
     column[part.vertices[static_cast<std::size_t>(i)]] = scale * vector[i];
   }
+}
+
+// Those of a connected mesh are the result as they lie.
+MatrixXd MergedPairs::release_vectors() {
+  if (components_.size() == 1 && components_[0].component().size() == rows_) {
+    MatrixXd vectors = components_[0].release_vectors(wanted_);
+    for (auto column : vectors.colwise()) column *= scale_of(components_[0].component(), column);
+    return vectors;
+  }
+  MatrixXd vectors(rows_, wanted_);
+  prefer_huge_pages(vectors.data(), static_cast<std::size_t>(vectors.size()) * sizeof(double));
+  for (Index j = 0; j < wanted_; ++j) {
+    write_vector(handed_on_[static_cast<std::size_t>(j)], vectors.col(j).data());
+  }
+  return vectors;
 }
 
 // In a gap of the merged list behind the last wanted pair: right after it if the gap there is

@@ -24,7 +24,11 @@ struct MergedPair {
 /// handed on once every component is known up to its eigenvalue.
 class MergedPairs {
  public:
-  MergedPairs(const Operator& op, const SpectrumOptions& options);
+  enum class Vectors : std::uint8_t {
+    forget,  ///< once they have been handed on
+    keep,    ///< to the end, for `release_vectors`
+  };
+  MergedPairs(const Operator& op, const SpectrumOptions& options, Vectors vectors);
 
   [[nodiscard]] Eigen::Index wanted() const { return wanted_; }
   [[nodiscard]] Eigen::Index handed_on() const { return std::ssize(handed_on_); }
@@ -35,6 +39,10 @@ class MergedPairs {
   [[nodiscard]] std::vector<MergedPair> next();
 
   void forget_handed_on();
+
+  /// The vectors of all pairs, N x wanted, of which the last has been handed on and none was
+  /// forgotten; nothing is left.
+  [[nodiscard]] Eigen::MatrixXd release_vectors();
 
   /// The vector of a pair, on all rows of the operator, with the canonical sign.
   void write_vector(const MergedPair& pair, double* column) const;
@@ -63,6 +71,7 @@ class MergedPairs {
   [[nodiscard]] std::vector<InertiaCount> shifts() const;
 
   SpectrumOptions options_;
+  bool forgets_;
   Eigen::Index rows_;
   Eigen::Index wanted_;
   double area_;

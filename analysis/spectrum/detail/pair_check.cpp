@@ -73,8 +73,8 @@ MatrixXd random_signs(Index first, Index count) {
 
 OrthonormalityCheck::OrthonormalityCheck(const Eigen::SparseMatrix<double>& M) : mass_(M) {}
 
-void OrthonormalityCheck::add(const PairWindow& pairs, Index first, Index count) {
-  constexpr Index kColumns = 32;  // at a time, so that M times them needs little memory
+void OrthonormalityCheck::add(const PairWindow& pairs, Index before, Index first, Index count) {
+  constexpr Index kColumns = 16;  // at a time, so that M times them needs little memory
   MatrixXd mass_vectors(pairs.rows(), std::min(kColumns, count));
   if (sums_.size() == 0) sums_.setZero(pairs.rows(), kSums);
   for (Index done = 0; done < count; done += kColumns) {
@@ -83,11 +83,10 @@ void OrthonormalityCheck::add(const PairWindow& pairs, Index first, Index count)
     const auto fresh = pairs.vectors(begin, some);
     auto mass_fresh = mass_vectors.leftCols(some);
     mass_fresh.noalias() = mass_ * fresh;
-    MatrixXd gram =
-        product_at_b(pairs.vectors(pairs.first(), begin + some - pairs.first()), mass_fresh);
+    MatrixXd gram = product_at_b(pairs.vectors(before, begin + some - before), mass_fresh);
     gram.bottomRows(some) -= MatrixXd::Identity(some, some);
     worst_ = std::max(worst_, largest(gram));
-    if (pairs.first() > 0) {
+    if (before > 0) {
       const MatrixXd products = product_at_b(sums_, mass_fresh);
       const MatrixXd means = products.colwise().norm() / std::sqrt(static_cast<double>(kSums));
       worst_ = std::max(worst_, largest(means));

@@ -21,17 +21,19 @@ namespace timbre::detail {
                                           const Eigen::VectorXd& lumped, const PairWindow& pairs,
                                           Eigen::Index first, Eigen::Index count);
 
-/// Watches that a stream of vectors stays M-orthonormal. Products with what the window still holds
-/// are all computed; earlier vectors are looked at through a few sums of all of them with random
-/// signs: the root mean square of a vector's products with these sums is, in the mean over signs,
-/// the root of the sum of its squared products with each, and so no less than the largest.
+/// Watches that a stream of vectors stays M-orthonormal. Products with those found together and the
+/// last ones before are all computed; earlier vectors are looked at through a few sums of all of
+/// them with random signs: the root mean square of a vector's products with these sums is, in the
+/// mean over signs, the root of the sum of its squared products with each, and so no less than the
+/// largest.
 class OrthonormalityCheck {
  public:
   /// @param M  must outlive this
   explicit OrthonormalityCheck(const Eigen::SparseMatrix<double>& M);
 
-  /// Looks at pairs [first, first + count), which follow those of the last call.
-  void add(const PairWindow& pairs, Eigen::Index first, Eigen::Index count);
+  /// Looks at pairs [first, first + count), which follow those of the last call, beside each other
+  /// and those from `before` on.
+  void add(const PairWindow& pairs, Eigen::Index before, Eigen::Index first, Eigen::Index count);
 
   [[nodiscard]] double worst() const { return worst_; }  ///< max |X^T M X - I| so far
 

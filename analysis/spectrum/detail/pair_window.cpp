@@ -3,29 +3,40 @@
 #include <algorithm>
 #include <utility>
 
+#include "timbre/analysis/core/huge_pages.h"
+
 namespace timbre::detail {
 
 using Eigen::Index;
 
+// Large blocks are moved by the system without a copy.
+void PairWindow::grow(Index columns) {
+  vectors_.conservativeResize(rows_, columns);
+  prefer_huge_pages(vectors_.data(), static_cast<std::size_t>(vectors_.size()) * sizeof(double));
+}
+
+void PairWindow::reserve(Index count) {
+  if (vectors_.cols() < count) grow(count);
+}
+
 void PairWindow::append(Index count) {
-  const std::size_t used = values_.size() * static_cast<std::size_t>(rows_);
-  const std::size_t needed = used + static_cast<std::size_t>(count * rows_);
-  if (needed > vectors_.size()) {
-    AlignedArray larger(std::max(needed, used + used / 2));
-    std::copy_n(vectors_.data(), used, larger.data());
-    vectors_ = std::move(larger);
-  }
-  values_.resize(values_.size() + static_cast<std::size_t>(count));
+  const Index used = std::ssize(values_);
+  if (used + count > vectors_.cols()) grow(std::max(used + count, used + used / 2));
+  values_.resize(static_cast<std::size_t>(used + count));
 }
 
 void PairWindow::drop_before(Index first) {
   const Index gone = std::min(first, end()) - first_;
   if (gone <= 0) return;
-  const std::size_t skipped = static_cast<std::size_t>(gone * rows_);
-  const std::size_t used = values_.size() * static_cast<std::size_t>(rows_);
-  std::copy(vectors_.data() + skipped, vectors_.data() + used, vectors_.data());
+  std::copy(column(first_ + gone), vectors_.data() + std::ssize(values_) * rows_, vectors_.data());
   values_.erase(values_.begin(), values_.begin() + gone);
   first_ += gone;
+}
+
+Eigen::MatrixXd PairWindow::release(Index count) {
+  vectors_.conservativeResize(Eigen::NoChange, count);
+  values_.clear();
+  return std::exchange(vectors_, {});
 }
 
 }  // namespace timbre::detail

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "timbre/analysis/spectrum/detail/aligned_array.h"
 #include "timbre/analysis/spectrum/detail/state_file.h"
 
 namespace timbre::detail {
@@ -37,25 +36,30 @@ class PairWindow {
     return vectors_.data() + static_cast<std::ptrdiff_t>(at(i)) * rows_;
   }
 
+  /// Takes the memory for so many vectors at once.
+  void reserve(Eigen::Index count);
   /// Adds pairs with values and vectors still to be written.
   void append(Eigen::Index count);
   /// Forgets pairs from `end` on.
   void truncate(Eigen::Index end) { values_.resize(at(end)); }
   /// Forgets pairs before `first`, where there are any.
   void drop_before(Eigen::Index first);
+  /// Gives the first `count` vectors away, of a window that has dropped none; nothing is left.
+  [[nodiscard]] Eigen::MatrixXd release(Eigen::Index count);
 
   /// To or from a StateWriter or StateReader.
   template <typename File>
   void exchange(File& file) {
     exchange_value(file, first_);
     exchange_vector(file, values_);
-    const std::size_t numbers = values_.size() * static_cast<std::size_t>(rows_);
-    file.expect(numbers * sizeof(double));
-    if (vectors_.size() < numbers) vectors_ = AlignedArray(numbers);
-    file.bytes(vectors_.data(), numbers * sizeof(double));
+    const std::size_t bytes = values_.size() * static_cast<std::size_t>(rows_) * sizeof(double);
+    file.expect(bytes);
+    if (vectors_.cols() < std::ssize(values_)) grow(std::ssize(values_));
+    file.bytes(vectors_.data(), bytes);
   }
 
  private:
+  void grow(Eigen::Index columns);
   [[nodiscard]] std::size_t at(Eigen::Index i) const {
     return static_cast<std::size_t>(i - first_);
   }
@@ -63,7 +67,7 @@ class PairWindow {
   Eigen::Index rows_;
   Eigen::Index first_ = 0;
   std::vector<double> values_;
-  AlignedArray vectors_;  // columns of `rows_`, with room for more
+  Eigen::MatrixXd vectors_;  // `rows_` x values, with room for more
 };
 
 }  // namespace timbre::detail

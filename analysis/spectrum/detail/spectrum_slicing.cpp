@@ -22,7 +22,6 @@ using Eigen::VectorXd;
 
 constexpr double kLeastGap = 1e-6;  // beside |lambda| + scale: copies are split by rounding only
 constexpr Index kGuard = 8;         // pairs beyond those wanted, among which to find a gap
-constexpr Index kNeighbours = 20;   // on each side of a cut, made orthogonal to each other
 
 [[noreturn]] void fail(const std::string& cause) {
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
@@ -56,6 +55,7 @@ SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
   state_.slope = spacing_;
   state_.lanczos.seed = options.seed;
   want(options.count);
+  if (options.keep_all) pairs_.reserve(std::min(state_.wanted + kGuard, pairs_.rows()));
 }
 
 void SpectrumSlicer::want(Index count) {

@@ -23,6 +23,8 @@ struct SlicingOptions {
   /// The kernel of K is the constants: the first pair becomes exactly that.
   bool has_constants = false;
   FactorizationBackend backend = FactorizationBackend::automatic;
+  /// Take the memory for all vectors at the beginning: where none will be forgotten.
+  bool keep_all = false;
   std::uint64_t seed = 1;                  ///< of start vectors
   std::function<void(int)> on_solve = {};  ///< after so many solves with a factor; may throw
 };
@@ -67,6 +69,9 @@ struct SlicingState {
 /// certain only after the next.
 class SpectrumSlicer {
  public:
+  /// Pairs on each side of a cut that are made orthogonal to each other.
+  static constexpr Eigen::Index kNeighbours = 20;
+
   /// Orders and analyses; computes no pair.
   ///
   /// @param K          n x n, symmetric, positive semi-definite; n above 100
@@ -91,6 +96,10 @@ class SpectrumSlicer {
 
   /// Pairs before number `first` are not asked for any more. Some of them are kept for a while.
   void forget_before(Eigen::Index first);
+  /// Gives the first vectors away, where none was forgotten; the end of this slicer.
+  [[nodiscard]] Eigen::MatrixXd release_vectors(Eigen::Index count) {
+    return pairs_.release(count);
+  }
 
   /// To or from a StateWriter or StateReader; a slicer of the same matrices and options goes on
   /// where the other was.

@@ -10,7 +10,8 @@ namespace timbre {
 
 /// The regions of one sign of a function, joined along edges. For a function that is linear on each
 /// triangle the strong ones are exactly the connected parts of the surface where it is positive, or
-/// negative: two such corners of a triangle share an edge.
+/// negative: two such corners of a triangle share an edge. Where nodal lines cross within
+/// a triangle or an edge, two of the four regions are therefore joined.
 struct NodalDomains {
   /// n, the strong domain of each vertex, numbered by their first vertices; -1 where the function
   /// counts as zero.

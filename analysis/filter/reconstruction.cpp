@@ -27,9 +27,10 @@ Reconstruction analyse_reconstruction(const Spectrum& spectrum, const SparseMatr
     found.errors[j] = std::sqrt(missed);
     if (j > 0) missed += found.energies[j - 1];
   }
-  const double variation = found.errors[std::min<Eigen::Index>(spectrum.zeros, k)];
-  if (variation > kRounding * found.errors[0]) {
-    found.errors /= variation;
+  found.variation = found.errors[std::min<Eigen::Index>(spectrum.zeros, k)];
+  if (found.variation <= kRounding * found.errors[0]) found.variation = 0.0;
+  if (found.variation > 0.0) {
+    found.errors /= found.variation;
   } else {
     found.errors.setZero();
   }

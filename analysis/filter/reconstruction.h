@@ -11,8 +11,9 @@ namespace timbre {
 struct Reconstruction {
   Eigen::VectorXd energies;  ///< k, squared norm along each eigenfunction
   double detail = 0.0;       ///< squared norm of what lies beyond all k
-  /// k + 1; errors(j) is the norm of what the lowest j eigenfunctions miss over that of what
-  /// constants miss: errors(zeros) = 1. All 0 for functions that do not vary.
+  double variation = 0.0;    ///< norm of what constants miss: of the functions less their means
+  /// k + 1; errors(j) is the norm of what the lowest j eigenfunctions miss, over `variation`:
+  /// errors(zeros) = 1. All 0 for functions that do not vary.
   Eigen::VectorXd errors;
 };
 

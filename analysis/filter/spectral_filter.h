@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "timbre/analysis/filter/reconstruction.h"
 #include "timbre/analysis/filter/transfer.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 
@@ -28,5 +29,12 @@ struct FilterOptions {
 [[nodiscard]] Eigen::MatrixXd apply_filter(const Spectrum& spectrum, const SparseMatrix& mass,
                                            const Eigen::MatrixXd& F, const Transfer& transfer,
                                            const FilterOptions& options = {});
+
+/// How far the filter moves the functions: the norm of `apply_filter(F) - F` over their variation,
+/// from what is known of F already; 0 if they do not vary.
+/// @param parts  `analyse_reconstruction` of the same spectrum and F
+/// @throws Error  bad_request if the transfer function is not finite at an eigenvalue
+[[nodiscard]] double relative_change(const Spectrum& spectrum, const Reconstruction& parts,
+                                     const Transfer& transfer, const FilterOptions& options = {});
 
 }  // namespace timbre

@@ -26,6 +26,14 @@ std::string to_rows_text(const Eigen::MatrixXd& values) {
   return text;
 }
 
+nlohmann::json to_json_rows(const Eigen::MatrixXd& values) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto& row : values.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
 std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix>& matrices) {
   const std::string format = array_format(path);
   if (format == "npy") return npy_of(matrices.front().values);

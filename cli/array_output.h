@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,8 @@ struct NamedMatrix {
 
 /// A row per line, shortest round-trip numbers parted by blanks.
 [[nodiscard]] std::string to_rows_text(const Eigen::MatrixXd& values);
+
+/// A list of rows.
+[[nodiscard]] nlohmann::json to_json_rows(const Eigen::MatrixXd& values);
 
 }  // namespace timbre::cli

@@ -83,6 +83,7 @@ void add_db(CLI::App& timbre, Context& context);
 void add_distance(CLI::App& timbre, Context& context);
 void add_embed(CLI::App& timbre, Context& context);
 void add_eval(CLI::App& timbre, Context& context);
+void add_filter(CLI::App& timbre, Context& context);
 void add_info(CLI::App& timbre, Context& context);
 void add_match(CLI::App& timbre, Context& context);
 void add_query(CLI::App& timbre, Context& context);

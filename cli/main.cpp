@@ -43,6 +43,7 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   add_signature(app, context);
   add_embed(app, context);
   add_distance(app, context);
+  add_filter(app, context);
   add_db(app, context);
   add_query(app, context);
   add_match(app, context);

@@ -29,17 +29,19 @@ draw gorilla1.ply -o "$pictures/distance.png" --size 300 --values d.npy --colour
   --lines 14 --markers 0
 # docs/operators.md: the gorilla coarse, its half refined by the example.
 cmake --install "$root/build/release" --prefix "$work/installed" >/dev/null
-cmake -S "$root/tests/consume" -B "$work/build" -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_PREFIX_PATH="$work/installed" \
-  -DEXAMPLE="$root/docs/examples/course_figures.cpp" >/dev/null
-cmake --build "$work/build" >/dev/null
+build_example() {  # into $work/NAME/consumer
+  cmake -S "$root/tests/consume" -B "$work/$1" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_PREFIX_PATH="$work/installed" -DEXAMPLE="$root/docs/examples/$1.cpp" >/dev/null
+  cmake --build "$work/$1" >/dev/null
+}
+build_example course_figures
 "$timbre" dataset make creatures -o "$work/coarse" --sets remeshed --species gorilla --poses 2 \
   --resolution 1000 -q
 "$timbre" dataset make ellipsoid -o "$work/ellipsoid.ply" --resolution 160 -q
 "$timbre" dataset make rectangle -o "$work/plate.ply" --resolution 3000 -q
 mkdir "$work/gorilla" "$work/ellipsoid"
-"$work/build/consumer" "$work/coarse/remeshed/gorilla0.ply" "$work/gorilla"
-"$work/build/consumer" "$work/ellipsoid.ply" "$work/ellipsoid"
+"$work/course_figures/consumer" "$work/coarse/remeshed/gorilla0.ply" "$work/gorilla"
+"$work/course_figures/consumer" "$work/ellipsoid.ply" "$work/ellipsoid"
 for operator in graph robust; do
   draw "$work/gorilla/uneven.ply" -o "$pictures/uneven_$operator.png" --size 220 --view front \
     --operator $operator --eigenfunction 4 --lines 24
@@ -55,4 +57,22 @@ done
 for letter in A B C D E; do
   draw "$work/gorilla/$letter.ply" -o "$pictures/filter_$letter.png" --size 150 --view front
 done
+# docs/filter.md
+filter() { "$timbre" filter "$@" --force -q >/dev/null; }
+for count in 10 40 160 640; do
+  filter horse0.ply --low-pass $count -o low.ply
+  draw low.ply -o "$pictures/low_pass_$count.png" --size 160 --view left
+done
+draw horse0.ply -o "$pictures/low_pass_all.png" --size 160 --view left
+printf '0 1\n200 1\n600 2.5\n6000 2.5\n' >enhance.txt
+filter gorilla0.ply --transfer enhance.txt -k 500 --detail keep -o enhanced.ply
+filter gorilla0.ply --smooth 0.0005 -k 500 -o smooth.ply
+draw gorilla0.ply -o "$pictures/transfer_none.png" --size 180 --view front
+draw enhanced.ply -o "$pictures/transfer_enhanced.png" --size 180 --view front
+draw smooth.ply -o "$pictures/transfer_smooth.png" --size 180 --view front
+draw lizard0.ply -o "$pictures/fiedler.png" --size 260x180 --eigenfunction 1 --lines 24
+filter horse0.ply --nodal 12 -o labels.npy
+draw horse0.ply -o "$pictures/nodal.png" --size 220 --values labels.npy --colours categorical
+build_example closed_curve
+"$work/closed_curve/consumer" "$pictures"
 ls -l "$pictures"

@@ -147,14 +147,6 @@ void require_fits_npz(Index rows, Index columns) {
               "holds at most 4 GiB; write the distances to a .npy file");
 }
 
-nlohmann::json rows_of(const MatrixXd& values) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const auto& row : values.rowwise()) {
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
-
 void run(const Arguments& args, const Context& context) {
   const std::string format = context.output.empty() ? "txt" : array_format(context.output);
   context.require_output();
@@ -202,7 +194,7 @@ void run(const Arguments& args, const Context& context) {
   if (!context.output.empty()) {
     document["output"] = context.output;
   } else if (context.json) {
-    document["values"] = rows_of(values);
+    document["values"] = to_json_rows(values);
   } else {
     text = to_rows_text(values);
   }

@@ -100,11 +100,7 @@ void answer(const std::vector<NamedMatrix>& matrices, const Arguments& args,
   }
   if (context.json) {
     for (const NamedMatrix& matrix : matrices) {
-      nlohmann::json rows = nlohmann::json::array();
-      for (const auto& row : matrix.values.rowwise()) {
-        rows.push_back(std::vector<double>(row.begin(), row.end()));
-      }
-      document[matrix.name == main.name ? "values" : matrix.name] = rows;
+      document[matrix.name == main.name ? "values" : matrix.name] = to_json_rows(matrix.values);
     }
   }
   context.answer(document, context.json ? "" : to_rows_text(main.values));

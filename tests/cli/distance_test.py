@@ -7,7 +7,6 @@ import math
 import os
 import pathlib
 import signal
-import struct
 import subprocess
 import sys
 import time
@@ -15,34 +14,17 @@ import unittest
 import zipfile
 
 import command_test
+import numpy_file
 import shapes
 
 TIMBRE = os.path.abspath(sys.argv.pop(1))
 command_test.CommandTest.TIMBRE = TIMBRE
 
 
-def square_off(n):
-    """The unit square of n x n cells; vertex (n + 1) i + j is at (i / n, j / n)."""
-    lines = ["OFF", f"{(n + 1) ** 2} {2 * n * n} 0"]
-    lines += [f"{i / n!r} {j / n!r} 0" for i in range(n + 1) for j in range(n + 1)]
-    for i in range(n):
-        for j in range(n):
-            a, b = (n + 1) * i + j, (n + 1) * (i + 1) + j
-            lines += [f"3 {a} {b} {b + 1}", f"3 {a} {b + 1} {a + 1}"]
-    return "\n".join(lines) + "\n"
-
-
-def read_npy(data):
-    """The header's text and the numbers."""
-    size = struct.unpack("<H", data[8:10])[0]
-    body = data[10 + size:]
-    return data[10:10 + size].decode(), struct.unpack(f"<{len(body) // 8}d", body)
-
-
 class Distance(command_test.CommandTest):
     def setUp(self):
         super().setUp()
-        self.mesh = self.put("square.off", square_off(8))
+        self.mesh = self.put("square.off", shapes.square_off(8))
 
     def run_timbre(self, *args, **options):
         return super().run_timbre("distance", *args, **options)
@@ -60,7 +42,7 @@ class Distance(command_test.CommandTest):
         os.rename(self.mesh, self.path("horse.off"))
         words = [word.replace("horse.ply", "horse.off") for word in words[2:]]
         self.run_timbre(*words, cwd=self.folder)
-        header, values = read_npy((self.folder / "horse_distances.npy").read_bytes())
+        header, values = numpy_file.read((self.folder / "horse_distances.npy").read_bytes())
         self.assertIn("'fortran_order': True, 'shape': (81, 2)", header)
         self.assertEqual(len(values), 162)
         self.assertEqual((values[0], values[81 + 17]), (0.0, 0.0))
@@ -81,19 +63,19 @@ class Distance(command_test.CommandTest):
         self.run_timbre(self.mesh, "--sources", sources, "-o", self.path("a.txt"), "--threads", "1")
         self.assertEqual(pathlib.Path(self.path("a.txt")).read_bytes(), text)
         self.run_timbre(self.mesh, "--sources", sources, "-o", self.path("a.npy"), "--threads", "3")
-        header, values = read_npy(pathlib.Path(self.path("a.npy")).read_bytes())
+        header, values = numpy_file.read(pathlib.Path(self.path("a.npy")).read_bytes())
         rows = [[float(x) for x in row.split()] for row in text.decode().splitlines()]
         self.assertEqual([values[81 * j + i] for i in range(81) for j in range(20)], sum(rows, []))
         self.run_timbre(self.mesh, "--sources", sources, "-o", self.path("a.npz"))
         with zipfile.ZipFile(self.path("a.npz")) as archive:
-            self.assertEqual(read_npy(archive.read("distances.npy")), (header, values))
+            self.assertEqual(numpy_file.read(archive.read("distances.npy")), (header, values))
 
     def test_one_source_is_a_vector(self):
         self.run_timbre(self.mesh, "--vertices", "3", "-o", self.path("a.npy"))
-        self.assertIn("'shape': (81,)", read_npy(pathlib.Path(self.path("a.npy")).read_bytes())[0])
+        self.assertIn("'shape': (81,)", numpy_file.read(pathlib.Path(self.path("a.npy")).read_bytes())[0])
 
     def test_json(self):
-        mesh = self.put("two.off", square_off(8).replace("81 128 0", "82 128 0").replace("1.0 1.0 0\n", "1.0 1.0 0\n9 9 9\n"))
+        mesh = self.put("two.off", shapes.square_off(8).replace("81 128 0", "82 128 0").replace("1.0 1.0 0\n", "1.0 1.0 0\n9 9 9\n"))
         answer = json.loads(self.run_timbre(mesh, "--vertices", "0,80", "--json").stdout)
         self.assertEqual((answer["method"], answer["vertices"], answer["sources"]), ("exact", 82, 2))
         self.assertEqual(answer["reached"], 162)

@@ -18,6 +18,17 @@ def torus_off(major, minor, nu=14, nv=8):
     return "\n".join(lines) + "\n"
 
 
+def square_off(n):
+    """The unit square of n x n cells; vertex (n + 1) i + j is at (i / n, j / n)."""
+    lines = ["OFF", f"{(n + 1) ** 2} {2 * n * n} 0"]
+    lines += [f"{i / n!r} {j / n!r} 0" for i in range(n + 1) for j in range(n + 1)]
+    for i in range(n):
+        for j in range(n):
+            a, b = (n + 1) * i + j, (n + 1) * (i + 1) + j
+            lines += [f"3 {a} {b} {b + 1}", f"3 {a} {b + 1} {a + 1}"]
+    return "\n".join(lines) + "\n"
+
+
 def write_tori(folder, count):
     """Files t00.off, t01.off, ... that get thinner; their paths."""
     paths = []

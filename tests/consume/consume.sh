@@ -23,3 +23,11 @@ cmake --build "$work/figures"
 for file in linear.npy cubic.ply uneven.ply E.ply; do
   test -s "$work/$file"
 done
+
+cmake -S "$source/tests/consume" -B "$work/curve" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$work/installed" -DEXAMPLE="$source/docs/examples/closed_curve.cpp" >/dev/null
+cmake --build "$work/curve"
+"$work/curve/consumer" "$work" | grep -q "^201 coefficients: error "
+for file in curve_compression.svg curve_smoothing.svg; do
+  test -s "$work/$file"
+done

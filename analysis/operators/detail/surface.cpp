@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <string>
 #include <utility>
 
+#include "timbre/analysis/core/disjoint_sets.h"
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/mesh/triangle.h"
 
@@ -92,37 +92,23 @@ SoundFaces sound_faces(const Faces& faces, const Points& lengths, const HasArea&
   return kept;
 }
 
-std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t v) {
-  while (parent[at(v)] != v) {
-    auto& up = parent[at(v)];
-    up = parent[at(up)];
-    v = up;
-  }
-  return v;
-}
-
 // Labels components by their first vertex, and drops those without area with their faces.
 void label_components(Surface& surface, const std::vector<bool>& has_area, Index n) {
-  std::vector<std::int32_t> parent(static_cast<std::size_t>(n));
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets sets(static_cast<std::size_t>(n));
   for (const MetricFace& face : surface.faces) {
-    for (const std::size_t c : {1U, 2U}) {
-      const std::int32_t a = find_root(parent, face.corner[0]);
-      const std::int32_t b = find_root(parent, face.corner[c]);
-      parent[at(std::max(a, b))] = std::min(a, b);
-    }
+    for (const std::size_t c : {1U, 2U}) sets.join(face.corner[0], face.corner[c]);
   }
   std::vector<bool> root_has_area(static_cast<std::size_t>(n), false);
   std::vector<bool> is_root(static_cast<std::size_t>(n), false);
   for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-    const std::size_t root = at(find_root(parent, surface.faces[f].corner[0]));
+    const std::size_t root = at(sets.root(surface.faces[f].corner[0]));
     is_root[root] = true;
     if (has_area[f]) root_has_area[root] = true;
   }
   surface.component.assign(static_cast<std::size_t>(n), -1);
   std::int32_t count = 0;
   for (std::size_t v = 0; v < surface.component.size(); ++v) {
-    const std::size_t root = at(find_root(parent, static_cast<std::int32_t>(v)));
+    const std::size_t root = at(sets.root(static_cast<std::int32_t>(v)));
     if (!root_has_area[root]) {
       if (is_root[v]) ++surface.left_out;
       continue;

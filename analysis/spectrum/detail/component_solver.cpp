@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr Index kDenseSize = 200;       // and below: dense
 constexpr Index kDenseIfMany = 1000;    // and below: dense if more than a quarter is wanted
-constexpr Index kGeometricCount = 150;  // and below: an ordering that is found fast pays
+constexpr Index kGeometricCount = 300;  // and below: an ordering that is found fast pays
 
 // Rows and columns `rows`, ascending, times `scale`.
 SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32_t>& rows,

@@ -43,8 +43,8 @@ double relative_change(const Spectrum& spectrum, const Reconstruction& parts,
                        const Transfer& transfer, const FilterOptions& options) {
   const Eigen::ArrayXd lost = 1.0 - factors_of(spectrum.values, transfer).array();
   const double detail_lost = 1.0 - options.detail;
-  const double squares = (lost.square() * parts.energies.array()).sum() +
-                         detail_lost * detail_lost * parts.detail;
+  const double squares =
+      (lost.square() * parts.energies.array()).sum() + detail_lost * detail_lost * parts.detail;
   return parts.variation > 0.0 ? std::sqrt(squares) / parts.variation : 0.0;
 }
 

@@ -13,7 +13,8 @@ namespace timbre {
 
 struct SpectrumOptions {
   int count = 100;  ///< eigenpairs wanted, from the lowest; capped at n
-  /// Largest residual accepted, as `residuals` measures it. The solver aims a thousand times lower.
+  /// Largest residual accepted, as `residuals` measures it. The solver aims a thousand times lower;
+  /// eigenvectors are accepted if orthonormal to a hundredth of it, or to 1e-8.
   double tolerance = 1e-6;
   bool certify = true;  ///< count eigenvalues at the end of the list, so that none is missing
   FactorizationBackend backend = FactorizationBackend::automatic;

@@ -226,7 +226,7 @@ VectorXd MergedPairs::residuals() const {
 }
 
 void MergedPairs::check(const Spectrum& found) const {
-  const double most = std::max(1e-8, 1e-2 * (options_.tolerance - 1e-6));
+  const double most = 1e-2 * std::max(options_.tolerance, 1e-6);  // 1e-8 unless less is asked for
   Index worst = 0;
   const double residual = found.residuals.maxCoeff(&worst);
   // Written so that NaN fails.

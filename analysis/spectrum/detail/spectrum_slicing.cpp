@@ -27,14 +27,23 @@ constexpr Index kGuard = 8;         // pairs beyond those wanted, among which to
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
 }
 
-int block_width(const SlicingOptions& options) {
+constexpr Index kLarge = 400000;  // and above: the basis must be small
+
+// Wider blocks solve faster, but need a larger basis.
+int block_width(const SlicingOptions& options, Index n) {
   if (options.width != 0) return options.width;
-  return options.count <= 150 ? 8 : 16;
+  return options.count <= 150 || n >= kLarge ? 8 : 16;
+}
+
+// Larger bands are a little faster.
+int half_band(const SlicingOptions& options, Index n) {
+  if (options.half != 0) return options.half;
+  return n >= kLarge ? 25 : 50;
 }
 
 int most_blocks(const SlicingOptions& options, Index n) {
-  const auto width = block_width(options);
-  const int usual = 6 * (2 * options.half + 8) / width + 8;
+  const auto width = block_width(options, n);
+  const int usual = 6 * (2 * half_band(options, n) + 8) / width + 8;
   return std::clamp(usual, 16, std::max(2, static_cast<int>(n) / width - 1));
 }
 
@@ -45,8 +54,9 @@ SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
                                const SlicingOptions& options)
     : mass_(M),
       options_(options),
+      usual_half_(half_band(options, K.rows())),
       factor_(make_shifted_factor(K, M, positions, options.backend)),
-      lanczos_(*factor_, {.width = block_width(options),
+      lanczos_(*factor_, {.width = block_width(options, K.rows()),
                           .tolerance = options.tolerance,
                           .most_blocks = most_blocks(options, K.rows()),
                           .on_solve = options.on_solve}),
@@ -102,7 +112,7 @@ void SpectrumSlicer::find_more() {
 // What remains is shared out evenly, so that no small band is left at the price of a full one.
 void SpectrumSlicer::plan_band() {
   const auto left = static_cast<double>(state_.wanted - state_.found);
-  const double bands = std::max(1.0, std::round(left / (2.0 * options_.half)));
+  const double bands = std::max(1.0, std::round(left / (2.0 * usual_half_)));
   half_ = (left + 3.0) / (2.0 * bands);
 }
 

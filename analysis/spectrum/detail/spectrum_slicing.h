@@ -17,8 +17,8 @@ namespace timbre::detail {
 struct SlicingOptions {
   Eigen::Index count = 100;  ///< pairs wanted, from the lowest; `want` can raise it
   double tolerance = 1e-9;   ///< of a pair, beside |lambda| + the largest wanted
-  int half = 50;             ///< pairs on each side of a shift, about
-  int width = 0;             ///< of blocks, 8 or 16; 0: chosen by count
+  int half = 0;              ///< pairs on each side of a shift, about; 0: chosen by size
+  int width = 0;             ///< of blocks, 8 or 16; 0: chosen by count and size
   bool certify = true;       ///< count at the end of the list, too
   /// The kernel of K is the constants: the first pair becomes exactly that.
   bool has_constants = false;
@@ -128,6 +128,7 @@ class SpectrumSlicer {
 
   const Eigen::SparseMatrix<double>& mass_;
   SlicingOptions options_;
+  int usual_half_;
   std::unique_ptr<ShiftedFactor> factor_;
   BlockLanczos lanczos_;
   double spacing_;  // of eigenvalues, by Weyl's law

@@ -256,6 +256,22 @@ TEST(ComputeSpectrum, RefusesZeroPairsAndSaysSo) {
   }
 }
 
+TEST(ComputeSpectrum, IsAsGoodAsAskedForAndCompleteAtAnyTolerance) {
+  const Operator op = compute_operator(make_ellipsoid(1.0, 0.8, 0.6, 16));
+  const Spectrum best = compute_spectrum(op, {.count = 250, .tolerance = 1e-9});
+  double last = 0.0;
+  for (const double tolerance : {1e-9, 1e-6, 1e-3, 1e-2}) {
+    const Spectrum found = compute_spectrum(op, {.count = 250, .tolerance = tolerance});
+    const double residual = found.residuals.maxCoeff();
+    EXPECT_LE(residual, tolerance);
+    EXPECT_GT(residual, last);  // or the larger tolerance saved nothing
+    EXPECT_LE(found.orthonormality, std::max(1e-8, 1e-2 * tolerance));
+    EXPECT_GE(found.certificate->count, 250);
+    EXPECT_LE((found.values - best.values).cwiseAbs().maxCoeff(), tolerance * best.values[249]);
+    last = residual;
+  }
+}
+
 TEST(ComputeSpectrum, RefusesWhatItCannotProve) {
   try {
     (void)compute_spectrum(compute_operator(make_sphere(8)), {.count = 20, .tolerance = 1e-20});

@@ -75,7 +75,7 @@ Spectrum stream_spectrum(const Context& context, const Operator& op,
                   options.resume);
   try {
     write_bands(context, stream, file);
-    const Spectrum found = stream.finish();
+    Spectrum found = stream.finish();
     const bool overwrite = context.force || options.resume;  // those of a run that was killed
     write_file(values_path(context.output), to_npy(found.values), overwrite);
     write_file(document_path(context.output), describe(found).dump(2) + "\n", overwrite);

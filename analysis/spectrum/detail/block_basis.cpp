@@ -127,7 +127,7 @@ BlockFactor BlockBasis::orthonormalise(double* U, double* Z) const {
     }
     const double left = G(j, j) - R.col(j).head(j).squaredNorm();
     factor.smallest_pivot = std::min(factor.smallest_pivot, left / G(j, j));
-    R(j, j) = std::sqrt(std::max(left, 1e-30 * G(j, j) + 1e-300));
+    R(j, j) = std::sqrt(std::max(left, 1e-30 * std::abs(G(j, j)) + 1e-300));
   }
   const Square inverse = R.triangularView<Eigen::Upper>().solve(Square::Identity(width_, width_));
   multiply_right(inverse, U, Z);

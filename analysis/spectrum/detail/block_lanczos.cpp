@@ -35,6 +35,8 @@ void BlockLanczos::solve(double* X) {
 void BlockLanczos::start() {
   basis_.clear();
   projected_.clear();
+  is_exhausted_ = false;
+  largest_ = 0.0;
   double* const U = basis_.next();
   std::mt19937_64 random(memory_.seed++);
   for (int i = 0; i < mass_.size(); ++i) {
@@ -60,6 +62,7 @@ void BlockLanczos::step() {
   constexpr int kPeriod = 3;
   constexpr int kPasses = 3;
   constexpr double kMostDrift = 1e-5;
+  constexpr double kNothing = 1e-11;  // what rounding leaves of a block inside the basis
   const int P = options_.width;
   const int j = basis_.blocks() - 1;
   double* const U = basis_.next();
@@ -89,6 +92,11 @@ void BlockLanczos::step() {
   }
   if (drift_ > kMostDrift) full_passes_only_ = true;
   projected_.append(last_factor_, Square(0.5 * (diagonal + diagonal.transpose())));
+  largest_ = std::max(largest_, diagonal.cwiseAbs().maxCoeff());
+  if (coupling.diagonal().maxCoeff() <= kNothing * largest_) {
+    is_exhausted_ = true;
+    coupling.setZero();
+  }
   last_factor_ = coupling;
   basis_.append_next();
 }
@@ -149,14 +157,17 @@ BandPairs BlockLanczos::go_on(double shift, const BandGoal& goal) {
 }
 
 BandPairs BlockLanczos::search(double shift, const BandGoal& goal, int next_test, int& tests) {
+  // The last dimensions beside what is locked are not independent to rounding.
+  const int room = (mass_.size() / options_.width - locked_.blocks()) * 3 / 4;
+  const int most = std::min(options_.most_blocks + 1, room);
+  const auto is_at_end = [&] { return is_exhausted_ || basis_.blocks() >= most; };
   for (BandPairs found;;) {
-    step();
+    if (!is_at_end()) step();
     const int steps = basis_.blocks() - 1;
-    const bool is_last = steps >= options_.most_blocks;
-    if (steps < next_test && !is_last) continue;
+    if (steps < next_test && !is_at_end()) continue;
     ++tests;
     int missing = 0;
-    if (try_goal(shift, goal, found, missing) || is_last) return found;
+    if (try_goal(shift, goal, found, missing) || is_at_end()) return found;
     next_test = steps + 1 + static_cast<int>(1.8 * missing / options_.width);
   }
 }

@@ -87,6 +87,10 @@ class BlockLanczos {
   Square last_factor_;  // R of the last block
   BandedEigenpairs small_;
   std::vector<int> chosen_;  // of small_, in the order of the pairs
+  // The inverse leads nowhere out of the basis: as with copies of a few eigenvalues, of which it
+  // then holds as many as a block is wide.
+  bool is_exhausted_ = false;
+  double largest_ = 0.0;  // entry of a diagonal block
   bool full_passes_only_ = false;
   double drift_ = 0.0;  // the largest loss of orthogonality that a full pass has met
   LanczosMemory memory_;

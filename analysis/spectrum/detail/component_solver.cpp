@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kDenseSize = 200;       // and below: dense
+constexpr Index kDenseSize = 500;       // and below: dense
 constexpr Index kDenseIfMany = 1000;    // and below: dense if more than a quarter is wanted
 constexpr Index kGeometricCount = 300;  // and below: an ordering that is found fast pays
 

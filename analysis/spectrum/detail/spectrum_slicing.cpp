@@ -171,14 +171,17 @@ Index SpectrumSlicer::count_at_cut() {
   fail("the count of eigenvalues is in doubt everywhere in a gap between them");
 }
 
-// Factorises where about `half_` pairs more are expected below, and counts them.
+// Factorises where about `half_` pairs more are expected below, and counts them. Where a cluster
+// of more than a band's pairs is in the way, close behind it.
 double SpectrumSlicer::place_shift() {
+  constexpr int kTries = 40;
+  constexpr double kNarrow = 1e-3;  // between the ends of a cluster, beside its eigenvalue
   const auto found = static_cast<double>(state_.found);
   const auto wanted = static_cast<double>(state_.wanted);
   const double target = std::min(found + half_, std::max(found + 1.0, wanted));
-  const double from = std::max(0.0, state_.cut);
-  double shift = from + (target - found) * state_.slope;
-  constexpr int kTries = 12;
+  double low = std::max(0.0, state_.cut);                 // none of those wanted is below
+  double high = std::numeric_limits<double>::infinity();  // too many are below
+  double shift = low + (target - found) * state_.slope;
   for (int i = 0; i < kTries; ++i) {
     const LdltReport report = factor_->factorize(shift);
     if (report.near_singular) {
@@ -187,18 +190,27 @@ double SpectrumSlicer::place_shift() {
     }
     const auto more = static_cast<double>(report.negative - state_.found);
     if (more < 0.0) fail("fewer eigenvalues below a shift than were found");
-    if (more <= 3.0 * half_ + 10.0) {
+    const bool is_too_far = more > 1.75 * half_ + 10.0;
+    const bool is_narrow = is_too_far && shift - low <= kNarrow * shift;
+    if (is_narrow || (!is_too_far && (more > 0.0 || std::isinf(high)))) {
       count_ = static_cast<Index>(report.negative);
       return shift;
     }
-    state_.slope *= half_ / more;
-    shift = from + (shift - from) * half_ / more;
+    if (is_too_far) {
+      state_.slope *= half_ / more;
+      high = shift;
+      shift = low + (shift - low) * std::max(half_ / more, 0.25);
+    } else {
+      low = shift;
+      shift = 0.5 * (low + high);
+    }
   }
   fail("no shift with a share of the spectrum below it was found");
 }
 
 // How many pairs lie below the widest gap, in the last quarter of those above the shift or
-// after the last one wanted; those below the shift if there is no clear gap.
+// after the last one wanted, or else below the next gap behind; those below the shift if there is
+// no clear gap.
 Index SpectrumSlicer::end_before_gap(const BandPairs& band) const {
   const auto total = static_cast<Index>(band.values.size());
   if (state_.found + total == pairs_.rows()) return total;  // there is nothing behind
@@ -208,7 +220,7 @@ Index SpectrumSlicer::end_before_gap(const BandPairs& band) const {
   if (state_.found + end > state_.wanted) first = std::max(first, state_.wanted - state_.found);
   Index best = left;
   double widest = 0.0;
-  for (Index i = std::max<Index>(first, 1); i < end; ++i) {
+  for (Index i = std::max<Index>(first, 1); i < (best == left ? total : end); ++i) {
     const double above = band.values[static_cast<std::size_t>(i)];
     const double gap = above - band.values[static_cast<std::size_t>(i - 1)];
     if (gap <= std::max(widest, kLeastGap * (std::abs(above) + scale()))) continue;
@@ -324,6 +336,7 @@ void SpectrumSlicer::advance_to(double cut, Index accepted) {
   state_.found += accepted;
   state_.cut = cut;
   state_.slices.back().accepted = static_cast<int>(accepted);
+  if (accepted == 0) state_.slope *= 2.0;  // a gap is here, and perhaps a cluster behind it
   if (state_.found <= 20 || accepted == 0) return;
   const double last = pairs_.value(state_.found - 1);
   state_.slope = (last - from) / static_cast<double>(accepted);

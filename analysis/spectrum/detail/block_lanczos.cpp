@@ -36,7 +36,9 @@ void BlockLanczos::start() {
   basis_.clear();
   projected_.clear();
   is_exhausted_ = false;
+  full_passes_only_ = false;
   largest_ = 0.0;
+  drift_ = 0.0;
   double* const U = basis_.next();
   std::mt19937_64 random(memory_.seed++);
   for (int i = 0; i < mass_.size(); ++i) {
@@ -140,7 +142,6 @@ bool BlockLanczos::try_goal(double shift, const BandGoal& goal, BandPairs& found
 
 BandPairs BlockLanczos::run(double shift, const BandGoal& goal) {
   const int P = options_.width;
-  full_passes_only_ = false;
   start();
   // Fitted on closed surfaces; what a run needed guides the next one.
   const double usual = 5.5 * P + 30.0 + 3.2 * std::max(goal.left, goal.right);
@@ -165,6 +166,7 @@ BandPairs BlockLanczos::search(double shift, const BandGoal& goal, int next_test
     if (!is_at_end()) step();
     const int steps = basis_.blocks() - 1;
     if (steps < next_test && !is_at_end()) continue;
+    if (steps == 0) return found;  // what is locked leaves no room
     ++tests;
     int missing = 0;
     if (try_goal(shift, goal, found, missing) || is_at_end()) return found;

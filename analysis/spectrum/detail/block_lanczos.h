@@ -92,7 +92,7 @@ class BlockLanczos {
   bool is_exhausted_ = false;
   double largest_ = 0.0;  // entry of a diagonal block
   bool full_passes_only_ = false;
-  double drift_ = 0.0;  // the largest loss of orthogonality that a full pass has met
+  double drift_ = 0.0;  // the largest loss of orthogonality that a full pass has met in this run
   LanczosMemory memory_;
 };
 

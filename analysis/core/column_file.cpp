@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 
 #include "timbre/analysis/core/error.h"
@@ -37,20 +38,31 @@ ColumnFile::ColumnFile(const std::string& path, Index rows, Index cols, ElementT
   }
 }
 
+// Both are on one file system then, whatever the name is a link to.
+std::string ColumnFile::unfinished(const std::string& path) {
+  std::error_code missing;
+  const std::filesystem::path real = std::filesystem::canonical(path, missing);
+  return (missing ? path : real.string()) + ".unfinished";
+}
+
 ColumnFile::~ColumnFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-// Not all file systems can reserve space; there the file grows as it is written.
+// Where space cannot be reserved the file grows as it is written.
 void ColumnFile::begin(const std::string& header, std::int64_t size) {
   const std::string name = unfinished(path_);
   descriptor_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(path_, errno, "create");
-  const int code = ::posix_fallocate(descriptor_, 0, size);
-  if (code != 0 && code != EOPNOTSUPP && code != EINVAL) {
+#ifdef __linux__
+  if (::fallocate(descriptor_, 0, 0, size) != 0 && errno != EOPNOTSUPP && errno != ENOSYS) {
+    const int code = errno;
     ::unlink(name.c_str());
     fail(path_, code, "write");
   }
+#else
+  (void)size;
+#endif
   write_at(0, header.data(), header.size());
 }
 
@@ -62,7 +74,8 @@ void ColumnFile::reopen(const std::string& header, std::int64_t size) {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0 || status.st_size > size ||
       ::pread(descriptor_, found.data(), found.size(), 0) != std::ssize(found) || found != header) {
-    throw Error(ErrorKind::bad_input, name, "", "was begun for another matrix");
+    throw Error(ErrorKind::bad_input, name, "",
+                "was begun for a matrix of another size or type of number");
   }
 }
 

@@ -9,7 +9,7 @@
 namespace timbre {
 
 /// The `.npy` file of a matrix whose columns come little by little, over several runs if need be.
-/// Until `commit` its name is PATH.unfinished.
+/// Until `commit` its name is that of `unfinished`.
 class ColumnFile {
  public:
   /// Reserves the whole file. With `resume` the unfinished file is opened again, and keeps its
@@ -30,9 +30,8 @@ class ColumnFile {
   /// @throws Error  io; bad_request if a file of that name is there and not to be replaced
   void commit(bool overwrite);
 
-  [[nodiscard]] static std::string unfinished(const std::string& path) {
-    return path + ".unfinished";
-  }
+  /// The name until then, beside the file that a link leads to.
+  [[nodiscard]] static std::string unfinished(const std::string& path);
 
  private:
   void begin(const std::string& header, std::int64_t size);

@@ -184,6 +184,7 @@ void write_file(const std::string& path, std::string_view content, bool overwrit
 
 void put_in_place(const std::string& from, const std::string& path, bool overwrite) {
   const Target target = find_target(path, overwrite);
+  if (target.mode) (void)::chmod(from.c_str(), *target.mode);
   rename_to(from, path, target, overwrite);
   sync_folder_of(target.path);
 }

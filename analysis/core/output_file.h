@@ -38,7 +38,7 @@ class OutputFile {
 
 /// Gives a file that is complete and synchronised its name, as `write_file` does.
 ///
-/// @param from  in the folder of `path`
+/// @param from  in the folder of `path`, or of the file that it is a link to
 /// @throws Error  io; bad_request if `path` exists and is not to be replaced
 void put_in_place(const std::string& from, const std::string& path, bool overwrite);
 

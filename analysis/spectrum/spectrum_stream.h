@@ -48,7 +48,7 @@ class SpectrumStream {
   /// @throws Error  io
   void save(const std::string& path) const;
 
-  /// Goes on from where the stream that wrote the file was.
+  /// Goes on from where the stream that wrote the file was. After an error this one is of no use.
   /// @return  pairs handed out by then
   /// @throws Error  io; bad_input if the file is damaged, or belongs to other matrices, options or
   ///                another version

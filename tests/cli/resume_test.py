@@ -14,7 +14,7 @@ import unittest
 
 from command_test import CommandTest
 
-COUNT = "360"
+COUNT = "600"
 
 
 def wait_for(condition, process, seconds=60):
@@ -82,13 +82,13 @@ class ResumeTest(CommandTest):
         refused = self.spectrum(code=2).stderr.decode()
         self.assertIn("f.npy: output: is unfinished; --resume goes on with it, --force begins again", refused)
         done = self.spectrum("--resume")
-        self.assertRegex(done.stderr.decode(), r"f\.npy: going on after \d+ of 360 eigenpairs")
+        self.assertRegex(done.stderr.decode(), r"f\.npy: going on after \d+ of 600 eigenpairs")
 
     def test_resume_is_refused_for_another_request(self):
         self.stop(signal.SIGINT)
         for other in (["--tolerance", "1e-5"], ["--operator", "graph"], ["--float32"]):
             refused = self.spectrum("--resume", *other, code=1).stderr.decode()
-            self.assertRegex(refused, "belongs to another mesh or other options|was begun for another matrix")
+            self.assertRegex(refused, "belongs to another mesh or other options|was begun for a matrix of another size")
         self.spectrum("--resume")
 
     def test_force_begins_again(self):

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <deque>
-#include <optional>
 #include <vector>
 
 #include "timbre/analysis/core/progress.h"
@@ -38,6 +37,7 @@ class MergedPairs {
   /// @throws Error  not_converged, cancelled
   [[nodiscard]] std::vector<MergedPair> next();
 
+  /// What is saved after it holds no vector that was handed on, but a few neighbours.
   void forget_handed_on();
 
   /// The vectors of all pairs, N x wanted, of which the last has been handed on and none was
@@ -57,6 +57,7 @@ class MergedPairs {
   void exchange(File& file) {
     exchange_vector(file, handed_on_);
     exchange_vector(file, handed_on_of_);
+    exchange_value(file, solves_);
     for (ComponentSolver& part : components_) part.exchange(file);
   }
 

@@ -65,6 +65,22 @@ TEST_F(AColumnFile, IsNotReopenedForAnotherMatrix) {
   EXPECT_NO_THROW(reopen(7, 5, ElementType::float64));
 }
 
+TEST_F(AColumnFile, ReplacesWhatALinkLeadsToAndKeepsItsMode) {
+  const TemporaryFolder elsewhere;
+  put_file(elsewhere / "real.npy", "old");
+  std::filesystem::permissions(elsewhere / "real.npy", std::filesystem::perms::owner_read |
+                                                           std::filesystem::perms::owner_write);
+  std::filesystem::create_symlink(elsewhere / "real.npy", path());
+  ColumnFile file(path(), 2, 2, ElementType::float64, false);
+  file.write(0, MatrixXd::Identity(2, 2));
+  EXPECT_TRUE(std::filesystem::exists(elsewhere / "real.npy.unfinished"));
+  file.commit(true);
+  EXPECT_TRUE(std::filesystem::is_symlink(path()));
+  EXPECT_EQ(file_content(elsewhere / "real.npy"), to_npy(MatrixXd(MatrixXd::Identity(2, 2))));
+  EXPECT_EQ(std::filesystem::status(path()).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
 TEST_F(AColumnFile, DoesNotReplaceAFileUnasked) {
   put_file(path(), "mine");
   ColumnFile file(path(), 2, 2, ElementType::float64, false);

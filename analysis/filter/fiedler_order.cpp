@@ -4,6 +4,7 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/filter/spectral_gap.h"
+#include "timbre/analysis/operators/components.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 
 namespace timbre {
@@ -13,29 +14,6 @@ using Eigen::Index;
 using Rows = std::vector<std::int32_t>;
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
-// Row numbers of each component; those without part are in none.
-std::vector<Rows> rows_of_components(const Operator& op) {
-  std::vector<Rows> rows(static_cast<std::size_t>(op.component_area.size()));
-  for (std::size_t i = 0; i < op.component.size(); ++i) {
-    if (op.component[i] >= 0) rows[at(op.component[i])].push_back(static_cast<std::int32_t>(i));
-  }
-  return rows;
-}
-
-SparseMatrix restricted(const SparseMatrix& matrix, const Rows& rows, const Rows& place) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t j = 0; j < rows.size(); ++j) {
-    for (SparseMatrix::InnerIterator entry(matrix, rows[j]); entry; ++entry) {
-      entries.emplace_back(place[static_cast<std::size_t>(entry.row())], static_cast<int>(j),
-                           entry.value());
-    }
-  }
-  const auto n = static_cast<Index>(rows.size());
-  SparseMatrix part(n, n);
-  part.setFromTriplets(entries.begin(), entries.end());
-  return part;
-}
 
 // The operator of one component alone.
 Operator part_of(const Operator& op, std::size_t component, const Rows& rows, const Rows& place) {
@@ -71,12 +49,7 @@ FiedlerOrder compute_fiedler_order(const Operator& op, const Progress& progress)
     throw Error(ErrorKind::bad_request, "", "boundary",
                 "the Fiedler vector is one of the neumann boundary");
   }
-  const std::vector<Rows> rows = rows_of_components(op);
-  Rows place(op.component.size(), -1);  // of each row within its component
-  for (const Rows& part : rows) {
-    for (std::size_t i = 0; i < part.size(); ++i) place[at(part[i])] = static_cast<std::int32_t>(i);
-  }
-
+  const auto [rows, place] = rows_of_components(op);
   FiedlerOrder found;
   found.vector = Eigen::VectorXd::Zero(op.vertices);
   found.values.resize(op.component_area.size());

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "timbre/analysis/operators/components.h"
 #include "timbre/analysis/spectrum/detail/constants.h"
 
 namespace timbre::detail {
@@ -19,24 +20,6 @@ constexpr Index kDenseSize = 500;       // and below: dense
 constexpr Index kDenseIfMany = 1000;    // and below: dense if more than a quarter is wanted
 constexpr Index kGeometricCount = 300;  // and below: an ordering that is found fast pays
 
-// Rows and columns `rows`, ascending, times `scale`.
-SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<std::int32_t>& rows,
-                        const std::vector<std::int32_t>& local, double scale) {
-  const auto n = static_cast<Index>(rows.size());
-  SparseMatrix part(n, n);
-  Index entries = 0;
-  for (const std::int32_t row : rows) entries += matrix.col(row).nonZeros();
-  part.reserve(entries);
-  for (Index j = 0; j < n; ++j) {
-    part.startVec(j);
-    for (SparseMatrix::InnerIterator it(matrix, rows[static_cast<std::size_t>(j)]); it; ++it) {
-      part.insertBack(local[static_cast<std::size_t>(it.row())], j) = scale * it.value();
-    }
-  }
-  part.finalize();
-  return part;
-}
-
 bool suits_dense(Index n, Index count) {
   return n <= kDenseSize || (n <= kDenseIfMany && count > n / 4);
 }
@@ -44,21 +27,17 @@ bool suits_dense(Index n, Index count) {
 }  // namespace
 
 std::vector<Component> split_into_components(const Operator& op) {
-  std::vector<Component> components(static_cast<std::size_t>(op.component_area.size()));
-  std::vector<std::int32_t> local(op.component.size(), -1);
-  for (std::size_t v = 0; v < op.component.size(); ++v) {
-    if (op.component[v] < 0) continue;
-    auto& vertices = components[static_cast<std::size_t>(op.component[v])].vertices;
-    local[v] = static_cast<std::int32_t>(vertices.size());
-    vertices.push_back(static_cast<std::int32_t>(v));
-  }
+  ComponentRows of_components = rows_of_components(op);
+  std::vector<Component> components(of_components.rows.size());
   for (std::size_t c = 0; c < components.size(); ++c) {
     Component& part = components[c];
+    part.vertices = std::move(of_components.rows[c]);
     part.area = op.component_area[static_cast<Index>(c)];
     part.diagonal_mass = op.mass_kind != MassKind::consistent;
     part.has_constants = op.has_constants[c];
-    part.stiffness = restricted(op.stiffness, part.vertices, local, 1.0);
-    part.mass = restricted(op.mass, part.vertices, local, 1.0 / part.area);
+    part.stiffness = restricted(op.stiffness, part.vertices, of_components.place);
+    part.mass = restricted(op.mass, part.vertices, of_components.place);
+    part.mass /= part.area;
     part.lumped_mass = op.lumped_mass(part.vertices) / part.area;
     if (op.positions.rows() > 0) part.positions = op.positions(part.vertices, Eigen::all);
   }

@@ -197,7 +197,7 @@ struct HeatGeodesics::Impl {
   double unit = 1.0;
   std::vector<std::int32_t> component;
   std::vector<FlatTriangle> triangles;
-  std::optional<Factorization> heat;  // with the steps of time in it
+  std::optional<Factorization> heat;
   std::optional<Factorization> poisson;
 };
 

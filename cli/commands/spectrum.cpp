@@ -87,8 +87,6 @@ void write_spectrum(const Context& context, const TriangleMesh& mesh, const Oper
   const std::string format = array_format(context.output);
   if (format == "npz") {
     context.write_result(context.output, npz(mesh, op, found));
-  } else if (format == "npy") {
-    context.write_result(context.output, to_npy(found.vectors));
   } else {
     context.write_result(context.output, lines(found.values));
   }

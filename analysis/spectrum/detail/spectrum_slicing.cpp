@@ -22,12 +22,11 @@ using Eigen::VectorXd;
 
 constexpr double kLeastGap = 1e-6;  // beside |lambda| + scale: copies are split by rounding only
 constexpr Index kGuard = 8;         // pairs beyond those wanted, among which to find a gap
+constexpr Index kLarge = 400000;    // unknowns, and above: the basis must be small
 
 [[noreturn]] void fail(const std::string& cause) {
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
 }
-
-constexpr Index kLarge = 400000;  // and above: the basis must be small
 
 // Wider blocks solve faster, but need a larger basis.
 int block_width(const SlicingOptions& options, Index n) {

@@ -1,5 +1,5 @@
-// Section 1 of the course in numbers and pictures: closed_curve FOLDER writes curve_compression.svg and
-// curve_smoothing.svg there.
+// Section 1 of the course in numbers and pictures: closed_curve FOLDER writes
+// curve_compression.svg and curve_smoothing.svg there.
 #include <Eigen/Core>
 #include <cmath>
 #include <iostream>

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/operators/components.h"
 #include "timbre/analysis/spectrum/detail/constants.h"
 
@@ -16,12 +17,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kDenseSize = 500;       // and below: dense
-constexpr Index kDenseIfMany = 1000;    // and below: dense if more than a quarter is wanted
+constexpr Index kDenseSize = 200;       // and below: dense
+constexpr Index kSmallSize = 1000;      // and below: dense if more than a quarter is wanted
 constexpr Index kGeometricCount = 300;  // and below: an ordering that is found fast pays
 
 bool suits_dense(Index n, Index count) {
-  return n <= kDenseSize || (n <= kDenseIfMany && count > n / 4);
+  return n <= kDenseSize || (n <= kSmallSize && count > n / 4);
 }
 
 }  // namespace
@@ -59,8 +60,23 @@ ComponentSolver::ComponentSolver(Component component, const ComponentSolveOption
                                  .on_solve = options.on_solve});
 }
 
+// A Krylov method finds little room in a small space where many pairs lie close together. Slicing
+// is tried first: it keeps more digits of small eigenvalues beside large ones.
+void ComponentSolver::slice_all_or_none() {
+  try {
+    while (!slicer_->is_done()) slicer_->advance();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::not_converged) throw;
+    slicer_.reset();
+  }
+}
+
 void ComponentSolver::advance() {
   if (is_exhausted()) return;
+  if (slicer_ && certain_ == 0 && component_.size() <= kSmallSize) {
+    slice_all_or_none();
+    if (slicer_) return take_over(slicer_->state().certain, slicer_->state().bound);
+  }
   if (!slicer_) {
     solve_dense();
     return take_over(component_.size(), std::numeric_limits<double>::infinity());

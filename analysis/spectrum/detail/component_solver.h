@@ -40,7 +40,8 @@ struct ComponentSolveOptions {
 };
 
 /// The eigenpairs of a component, from the lowest, found little by little and handed on in that
-/// order: all at once by a dense solver if it is small, else band by band.
+/// order: all at once if it is small, by a dense solver where slicing does not do, else band by
+/// band.
 class ComponentSolver {
  public:
   ComponentSolver(Component component, const ComponentSolveOptions& options);
@@ -80,11 +81,15 @@ class ComponentSolver {
     exchange_value(file, bound_);
     exchange_vector(file, errors_);
     check_.exchange(file);
+    bool slices = slicer_.has_value();
+    exchange_value(file, slices);
+    if (!slices) slicer_.reset();
     if (slicer_) slicer_->exchange(file);
     if (!slicer_ && certain_ > dense_.end()) solve_dense();
   }
 
  private:
+  void slice_all_or_none();
   void solve_dense();
   void take_over(Eigen::Index certain, double bound);
 

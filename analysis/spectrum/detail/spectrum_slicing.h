@@ -74,8 +74,8 @@ class SpectrumSlicer {
 
   /// Orders and analyses; computes no pair.
   ///
-  /// @param K          n x n, symmetric, positive semi-definite; n above 500, so
-  ///                   that the basis is a part of the space
+  /// @param K          n x n, symmetric, positive semi-definite; n above
+  ///                   200; the smaller, the more often counts cannot be met
   /// @param M          n x n, symmetric, positive definite; about sum(M) / (4 pi) eigenvalues are
   ///                   expected in a unit interval (Weyl). Must outlive this
   /// @param positions  n x 3 for a geometric ordering, or nullptr

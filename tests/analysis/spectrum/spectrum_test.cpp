@@ -256,6 +256,19 @@ TEST(ComputeSpectrum, RefusesZeroPairsAndSaysSo) {
   }
 }
 
+TEST(ComputeSpectrum, FindsAllOfSmallToriWhateverTheCount) {
+  for (const int n : {15, 16, 17}) {
+    const IntrinsicMesh torus = make_flat_torus(n);
+    const Operator op = compute_operator(torus.faces, torus.lengths, torus.vertices);
+    const VectorXd all = compute_spectrum(op, {.count = n * n}).values;
+    for (int count = 20; count <= n * n / 4; ++count) {
+      const Spectrum found = compute_spectrum(op, {.count = count});
+      EXPECT_LT((found.values - all.head(count)).cwiseAbs().maxCoeff(), 1e-8 * all[count - 1]);
+      EXPECT_EQ(found.certificate->count, (all.array() < found.certificate->bound).count());
+    }
+  }
+}
+
 TEST(ComputeSpectrum, IsAsGoodAsAskedForAndCompleteAtAnyTolerance) {
   const Operator op = compute_operator(make_ellipsoid(1.0, 0.8, 0.6, 16));
   const Spectrum best = compute_spectrum(op, {.count = 250, .tolerance = 1e-9});

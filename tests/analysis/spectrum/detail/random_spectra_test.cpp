@@ -26,7 +26,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 using Random = std::mt19937_64;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kCases = 10;
+constexpr int kCases = 3;
 #else
 constexpr int kCases = 100;
 #endif

@@ -46,6 +46,16 @@ function(timbre_library name)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
+# Links static libraries of this project before the objects of a target that is compiled with less
+# optimisation: of a template that both instantiate, the linker keeps the one it sees first.
+function(timbre_link_first target)
+  target_link_libraries(${target} PRIVATE ${ARGN})
+  foreach(library ${ARGN})
+    target_link_options(${target} PRIVATE
+      LINKER:--whole-archive,$<TARGET_FILE:${library}>,--no-whole-archive)
+  endforeach()
+endfunction()
+
 # A package that brings no CMake file of its own: header and library by name,
 # so that the exported targets name nothing of this machine.
 function(timbre_require_library target library header)

@@ -4,7 +4,8 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/timbre SYMB
 
 find_program(TIMBRE_CCACHE ccache)
 if(TIMBRE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TIMBRE_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros ${TIMBRE_CCACHE})
 endif()
 
 # Warnings, sanitizers and coverage of everything this project compiles.
@@ -32,6 +33,30 @@ function(timbre_compile_options target)
   endif()
 endfunction()
 
+# Half of the time to compile a source is reading the same headers. Targets with the same options
+# share those of the first: timbre_precompile(TARGET GROUP HEADERS...).
+function(timbre_precompile target group)
+  if(NOT TIMBRE_PRECOMPILE)
+    return()
+  endif()
+  get_property(first GLOBAL PROPERTY TIMBRE_PRECOMPILED_${group})
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set_property(GLOBAL PROPERTY TIMBRE_PRECOMPILED_${group} ${target})
+  endif()
+  if(TIMBRE_CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -fpch-preprocess)  # else nothing is cached
+  endif()
+endfunction()
+
+# Sources that read each header for themselves: of precompiled strings, g++ 12 warns in some that
+# their lengths may be negative.
+function(timbre_precompile_not)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # A library per top-level folder: alias, include path, warnings, export.
 function(timbre_library name)
   add_library(timbre_${name} STATIC ${ARGN})
@@ -41,6 +66,8 @@ function(timbre_library name)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(timbre_${name} PUBLIC cxx_std_20)
   timbre_compile_options(timbre_${name})
+  timbre_precompile(timbre_${name} libraries
+    <Eigen/Core> <Eigen/SparseCore> <algorithm> <functional> <map> <memory> <optional> <string> <vector>)
   set_target_properties(timbre_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   install(TARGETS timbre_${name} EXPORT timbreTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

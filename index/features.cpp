@@ -5,16 +5,18 @@
 namespace timbre {
 
 ShapeFeatures compute_features(TriangleMesh mesh, const StoreParameters& parameters,
-                               const Progress& progress) {
+                               const Progress& progress, int threads) {
   Operator op = compute_operator(mesh, {.kind = parameters.operator_kind, .mass = parameters.mass});
-  Spectrum spectrum = compute_spectrum(op, {.count = parameters.count, .progress = progress});
+  Spectrum spectrum =
+      compute_spectrum(op, {.count = parameters.count, .threads = threads, .progress = progress});
   return {at_unit_area(at_vertices(std::move(spectrum), op), op.area), op.area, std::move(mesh),
           op.lumped_mass.head(op.vertices)};
 }
 
 ShapeRecord compute_record(std::string name, std::string label, TriangleMesh mesh,
-                           const StoreParameters& parameters, const Progress& progress) {
-  ShapeFeatures features = compute_features(std::move(mesh), parameters, progress);
+                           const StoreParameters& parameters, const Progress& progress,
+                           int threads) {
+  ShapeFeatures features = compute_features(std::move(mesh), parameters, progress, threads);
   ShapeRecord record;
   record.name = std::move(name);
   record.label = std::move(label);

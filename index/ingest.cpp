@@ -13,6 +13,7 @@
 
 #include "timbre/analysis/core/byte_source.h"
 #include "timbre/analysis/core/error.h"
+#include "timbre/analysis/core/memory_budget.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/index/features.h"
 #include "timbre/index/labels.h"
@@ -95,7 +96,14 @@ struct Task {
   const KnownContent& known;
   const IngestOptions& options;
   Progress keep_going;
+  int threads;  // of one mesh
+  MemoryBudget& memory;
 };
+
+// Nodes of the operator for each vertex of a mesh, about.
+std::int64_t nodes_per_vertex(OperatorKind kind) {
+  return kind == OperatorKind::p3 ? 9 : kind == OperatorKind::p2 ? 4 : 1;
+}
 
 // Waiting for standard input ends when the whole is stopped.
 MeshFile read(const std::string& path, const Task& task) {
@@ -122,8 +130,11 @@ void read_and_solve(const IngestInput& input, const Task& task, Computed& comput
     }
     return;
   }
-  computed.record =
-      compute_record(name, input.label, std::move(file.mesh), task.parameters, task.keep_going);
+  const auto share = task.memory.take(
+      expected_memory(file.mesh.vertices.rows() * nodes_per_vertex(task.parameters.operator_kind),
+                      task.parameters.count));
+  computed.record = compute_record(name, input.label, std::move(file.mesh), task.parameters,
+                                   task.keep_going, task.threads);
   computed.solved = true;
 }
 
@@ -185,8 +196,10 @@ IngestSummary add_files(Store& store, const std::vector<IngestInput>& inputs,
   const int wanted = options.threads > 0 ? options.threads : hardware_threads();
   const int threads = static_cast<int>(std::min(inputs.size(), static_cast<std::size_t>(wanted)));
   std::atomic<bool> stop = false;
-  const Task task{store.parameters(), known, options,
-                  [&stop](const ProgressStep&) { return !stop; }};
+  MemoryBudget memory(options.memory > 0 ? options.memory : available_memory() / 4 * 3);
+  const Task task{
+      store.parameters(),       known, options, [&stop](const ProgressStep&) { return !stop; },
+      threads > 1 ? 1 : wanted, memory};
   struct StopOnLeaving {
     std::atomic<bool>& flag;
     ~StopOnLeaving() { flag = true; }

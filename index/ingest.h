@@ -19,8 +19,11 @@ struct IngestInput {
 };
 
 struct IngestOptions {
-  bool replace = false;    ///< put other content or another label in place of what is there
-  int threads = 0;         ///< meshes worked on at a time; 0: all cores
+  bool replace = false;  ///< put other content or another label in place of what is there
+  int threads = 0;       ///< meshes worked on at a time; 0: all cores
+  /// Bytes that meshes solved at a time may take, by their size; a larger one goes alone.
+  /// 0: three quarters of what the system has free
+  std::int64_t memory = 0;
   Progress progress = {};  ///< counts inputs; may be empty
   ReadOptions read = {};   ///< of the mesh files
 };
@@ -42,9 +45,9 @@ struct IngestSummary {
 
 /// Reads, solves and stores mesh files.
 ///
-/// Threads solve one mesh each; the caller's thread stores them in the order of `inputs`,
-/// so that the database does not depend on the number of threads. At most two meshes per
-/// thread are held in memory. A file that cannot be read or solved is reported and the
+/// Threads solve one mesh each, as many as `memory` allows; the caller's thread stores them in the
+/// order of `inputs`, so that the database does not depend on the number of threads. At most two
+/// meshes per thread are held in memory. A file that cannot be read or solved is reported and the
 /// others go on. Of a shape that is there already only the file is read.
 ///
 /// @param on_result  called in the order of `inputs`; what it hears of is durable

@@ -18,6 +18,7 @@ struct SpectrumOptions {
   double tolerance = 1e-6;
   bool certify = true;  ///< count eigenvalues at the end of the list, so that none is missing
   FactorizationBackend backend = FactorizationBackend::automatic;
+  int threads = 0;         ///< that work on one mesh, if it is large; 0: all cores
   Progress progress = {};  ///< may be empty
 };
 
@@ -65,6 +66,11 @@ struct Spectrum {
 ///                or the inertia counts cannot be met, after retries; cancelled
 /// @see Vallet and Levy 2008, section 4 (shift-invert, band by band); Ericsson and Ruhe 1980
 [[nodiscard]] Spectrum compute_spectrum(const Operator& op, const SpectrumOptions& options = {});
+
+/// Bytes that `compute_spectrum` will take at most for most meshes, by their size alone.
+/// @param rows   of the matrices
+/// @param count  of eigenpairs
+[[nodiscard]] std::int64_t expected_memory(Eigen::Index rows, int count);
 
 /// The same spectrum as of the surface scaled to unit total area: values times the
 /// area, vectors times its square root.

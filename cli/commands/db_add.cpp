@@ -21,6 +21,7 @@ struct Arguments {
   bool replace = false;
   OperatorOptions op;
   int count = StoreParameters().count;
+  double memory = 0.0;  // GiB; 0: by what is free
   // Given on the command line: only these must agree with a database that is there.
   bool operator_given = false, mass_given = false, count_given = false;
 };
@@ -105,6 +106,7 @@ void run(const Arguments& args, Context& context) {
       add_files(store, inputs,
                 {.replace = args.replace,
                  .threads = context.threads,
+                 .memory = static_cast<std::int64_t>(args.memory * 0x1p30),
                  .progress = context.progress(),
                  .read = context.read},
                 [&](const IngestResult& result) { report(context, result, results); });
@@ -137,6 +139,10 @@ void add_db_add(CLI::App& db, Context& context) {
       ->check(CLI::Range(2, 100000));
   add_read_options(command, context);
   add_threads_option(command, context);
+  command
+      .add_option("--memory", args->memory,
+                  "GiB for meshes solved at a time; default: three quarters of what is free")
+      ->check(number_between(0.001, 1e6));
   add_common_options(command, context, false);
   command.footer(
       "A line 'added NAME' means that NAME is on disk, whatever happens next. Adding again\n"

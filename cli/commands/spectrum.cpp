@@ -143,6 +143,7 @@ void run(const Arguments& args, const Context& context) {
                  " no area and no part in the spectrum");
   }
   SpectrumOptions options = args.spectrum;
+  options.threads = context.threads;
   options.progress = context.progress();
   const auto document_of = [&](const Spectrum& found) { return describe(args.mesh, op, found); };
   const Spectrum found = for_file(args.mesh, [&] {
@@ -185,6 +186,7 @@ void add_spectrum(CLI::App& timbre, Context& context) {
       "eigenfunctions of F.npy in single precision");
   command.add_flag("--resume", args->stream.resume, "go on with an unfinished F.npy");
   add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, true);
   command.footer(
       "Without -o the eigenvalues are printed, one a line. F.npz holds mesh, matrices and\n"

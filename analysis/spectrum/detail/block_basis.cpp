@@ -3,17 +3,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+
+#include "timbre/analysis/core/threads.h"
 
 namespace timbre::detail {
 namespace {
 
 constexpr int kChunk = 128;  // rows of a block that stay in cache while all blocks pass by
+constexpr int kPieces = 8;
+
+int pieces_of(int size) { return size < kPieces * 8 * kChunk ? 1 : kPieces; }
+
+// Where a piece begins: pieces are whole chunks.
+int piece_begin(int size, int piece) {
+  const std::int64_t chunks = (size + kChunk - 1) / kChunk;
+  return static_cast<int>(std::min<std::int64_t>(size, chunks * piece / pieces_of(size) * kChunk));
+}
 
 }  // namespace
 
-BlockMass::BlockMass(const Pencil& pencil)
-    : pencil_(&pencil), diagonal_(static_cast<std::size_t>(pencil.size)) {
+void for_each_piece(int size, int threads, const std::function<void(int, int, int)>& visit) {
+  parallel_for(pieces_of(size), threads, [&](std::int64_t i) {
+    const int piece = static_cast<int>(i);
+    visit(piece, piece_begin(size, piece), piece_begin(size, piece + 1));
+  });
+}
+
+BlockMass::BlockMass(const Pencil& pencil, int threads)
+    : pencil_(&pencil), threads_(threads), diagonal_(static_cast<std::size_t>(pencil.size)) {
   for (int j = 0; j < pencil.size; ++j) {
     const auto column = static_cast<std::size_t>(j);
     const std::int64_t begin = pencil.start[column];
@@ -26,12 +45,14 @@ BlockMass::BlockMass(const Pencil& pencil)
 
 void BlockMass::multiply(const double* U, int width, double* Z) const {
   const int n = size();
-  for (int i = 0; i < n; ++i) {
-    const double m = diagonal(i);
-    const std::size_t row = static_cast<std::size_t>(i) * static_cast<std::size_t>(width);
-    for (int c = 0; c < width; ++c)
-      Z[row + static_cast<std::size_t>(c)] = m * U[row + static_cast<std::size_t>(c)];
-  }
+  for_each_piece(n, threads_, [&](int, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const double m = diagonal(i);
+      const std::size_t row = static_cast<std::size_t>(i) * static_cast<std::size_t>(width);
+      for (int c = 0; c < width; ++c)
+        Z[row + static_cast<std::size_t>(c)] = m * U[row + static_cast<std::size_t>(c)];
+    }
+  });
   if (is_diagonal_) return;
   for (int j = 0; j < n; ++j) {
     const auto column = static_cast<std::size_t>(j);
@@ -49,8 +70,8 @@ void BlockMass::multiply(const double* U, int width, double* Z) const {
   }
 }
 
-BlockBasis::BlockBasis(int size, int width, InstructionSet instructions)
-    : size_(size), width_(width), kernels_(block_kernels(instructions)) {}
+BlockBasis::BlockBasis(int size, int width, InstructionSet instructions, int threads)
+    : size_(size), width_(width), threads_(threads), kernels_(block_kernels(instructions)) {}
 
 std::size_t BlockBasis::numbers() const { return at(size_) * at(width_); }
 
@@ -59,23 +80,36 @@ double* BlockBasis::next() {
   return const_cast<double*>(place(used_));
 }
 
+// Calls `visit(first number, rows)`; chunks of different pieces on several threads.
 template <typename Visit>
 void BlockBasis::for_each_chunk(Visit visit) const {
-  for (int row = 0; row < size_; row += kChunk) {
-    visit(at(row) * at(width_), std::min(kChunk, size_ - row));
-  }
+  for_each_piece(size_, threads_, [&](int, int begin, int end) {
+    for (int row = begin; row < end; row += kChunk) {
+      visit(at(row) * at(width_), std::min(kChunk, end - row));
+    }
+  });
+}
+
+// The sum of what `add(first number, rows, sum)` adds for each chunk: within pieces, then of them.
+template <typename Add>
+Square BlockBasis::sum(Eigen::Index rows, Add add) const {
+  std::vector<Square> sums(at(pieces_of(size_)), Square::Zero(rows, width_));
+  for_each_piece(size_, threads_, [&](int piece, int begin, int end) {
+    for (int row = begin; row < end; row += kChunk) {
+      add(at(row) * at(width_), std::min(kChunk, end - row), sums[at(piece)].data());
+    }
+  });
+  for (std::size_t i = 1; i < sums.size(); ++i) sums[0] += sums[i];
+  return std::move(sums[0]);
 }
 
 Square BlockBasis::products(const double* Z, int first) const {
-  Square H = Square::Zero(Eigen::Index{used_ - first} * width_, width_);
-  const int square = width_ * width_;
-  for_each_chunk([&](std::size_t begin, int rows) {
+  const std::size_t square = at(width_) * at(width_);
+  return sum(Eigen::Index{used_ - first} * width_, [&](std::size_t begin, int rows, double* H) {
     for (int j = first; j < used_; ++j) {
-      kernels_.add_products(block(j) + begin, Z + begin, rows, width_,
-                            H.data() + at(j - first) * at(square));
+      kernels_.add_products(block(j) + begin, Z + begin, rows, width_, H + at(j - first) * square);
     }
   });
-  return H;
 }
 
 void BlockBasis::subtract(const Square& H, double* U, int first) const {
@@ -88,12 +122,17 @@ void BlockBasis::subtract(const Square& H, double* U, int first) const {
   });
 }
 
-Square BlockBasis::gram(const double* A, const double* B) const {
-  Square G = Square::Zero(width_, width_);
-  for_each_chunk([&](std::size_t begin, int rows) {
-    kernels_.add_products(A + begin, B + begin, rows, width_, G.data());
+void BlockBasis::copy(const double* from, double* to) const {
+  for_each_piece(size_, threads_, [&](int, int begin, int end) {
+    std::copy_n(from + at(begin) * at(width_), at(end - begin) * at(width_),
+                to + at(begin) * at(width_));
   });
-  return G;
+}
+
+Square BlockBasis::gram(const double* A, const double* B) const {
+  return sum(width_, [&](std::size_t begin, int rows, double* G) {
+    kernels_.add_products(A + begin, B + begin, rows, width_, G);
+  });
 }
 
 void BlockBasis::subtract(const double* V, const Square& H, double* U) const {
@@ -104,8 +143,8 @@ void BlockBasis::subtract(const double* V, const Square& H, double* U) const {
 
 void BlockBasis::multiply_right(const Square& T, double* U, double* Z) const {
   const Square negative = -T;
-  alignas(64) std::array<double, std::size_t{kChunk} * 16> result;
   for_each_chunk([&](std::size_t begin, int rows) {
+    alignas(64) std::array<double, std::size_t{kChunk} * 16> result;
     for (double* const block : {U, Z}) {
       const auto count = at(rows) * at(width_);
       std::fill_n(result.begin(), count, 0.0);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "timbre/analysis/spectrum/detail/aligned_array.h"
@@ -13,11 +14,16 @@ namespace timbre::detail {
 /// A square of the block width; row i, column j belongs to columns i and j of two blocks.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Calls `visit(piece, begin, end)` for pieces of the rows [0, size), which are the same for any
+/// number of threads; 0: all cores. Few rows are one piece.
+void for_each_piece(int size, int threads, const std::function<void(int, int, int)>& visit);
+
 /// M of a pencil as it acts on blocks.
 class BlockMass {
  public:
-  /// @param pencil  must outlive this
-  explicit BlockMass(const Pencil& pencil);
+  /// @param pencil   must outlive this
+  /// @param threads  0: all cores
+  BlockMass(const Pencil& pencil, int threads);
 
   [[nodiscard]] int size() const { return static_cast<int>(diagonal_.size()); }
   [[nodiscard]] double diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
@@ -26,6 +32,7 @@ class BlockMass {
 
  private:
   const Pencil* pencil_;
+  int threads_;
   std::vector<double> diagonal_;
   bool is_diagonal_ = true;
 };
@@ -37,11 +44,12 @@ struct BlockFactor {
 };
 
 /// Blocks of vectors, size x width each, and the products that a block Krylov method makes of
-/// them. Sums run over fixed chunks of rows in a fixed order.
+/// them. Sums run over fixed pieces of the rows in a fixed order, whatever the number of threads.
 class BlockBasis {
  public:
-  /// @param width  8 or 16
-  BlockBasis(int size, int width, InstructionSet instructions);
+  /// @param width    8 or 16
+  /// @param threads  0: all cores
+  BlockBasis(int size, int width, InstructionSet instructions, int threads);
 
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] int width() const { return width_; }
@@ -59,6 +67,7 @@ class BlockBasis {
   /// U -= V H, with H as `products` gives it.
   void subtract(const Square& H, double* U, int first = 0) const;
 
+  void copy(const double* from, double* to) const;
   /// A^T B of two blocks.
   [[nodiscard]] Square gram(const double* A, const double* B) const;
   /// U -= V H for blocks of any owner.
@@ -75,9 +84,12 @@ class BlockBasis {
   }
   template <typename Visit>
   void for_each_chunk(Visit visit) const;
+  template <typename Add>
+  [[nodiscard]] Square sum(Eigen::Index rows, Add add) const;
 
   int size_;
   int width_;
+  int threads_;
   const BlockKernels& kernels_;
   // Blocks lie in slabs of several, so that hardly any of them begins or ends inside a large page.
   static constexpr int kBlocksInSlab = 8;

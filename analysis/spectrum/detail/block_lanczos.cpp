@@ -20,9 +20,9 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 BlockLanczos::BlockLanczos(const ShiftedFactor& factor, LanczosOptions options)
     : factor_(factor),
       options_(std::move(options)),
-      mass_(factor.pencil()),
-      basis_(mass_.size(), options_.width, best_instruction_set()),
-      locked_(mass_.size(), options_.width, best_instruction_set()),
+      mass_(factor.pencil(), options_.threads),
+      basis_(mass_.size(), options_.width, best_instruction_set(), options_.threads),
+      locked_(mass_.size(), options_.width, best_instruction_set(), options_.threads),
       Z_(basis_.numbers()),
       projected_(options_.width) {}
 
@@ -68,7 +68,7 @@ void BlockLanczos::step() {
   const int P = options_.width;
   const int j = basis_.blocks() - 1;
   double* const U = basis_.next();
-  std::copy_n(Z_.data(), basis_.numbers(), U);
+  basis_.copy(Z_.data(), U);
   solve(U);
   if (j > 0) basis_.subtract(basis_.block(j - 1), last_factor_.transpose(), U);
   Square diagonal = basis_.gram(Z_.data(), U);
@@ -189,20 +189,23 @@ MatrixXd BlockLanczos::coefficients(int first, int count) const {
   return C;
 }
 
-// Calls `write(row, vectors)` for all rows, some at a time; vectors are rows x count.
+// Calls `write(row, vectors)` for all rows, some at a time, on several threads; vectors are
+// rows x count.
 template <typename Write>
 void BlockLanczos::for_each_rows(const MatrixXd& coefficients, Write write) const {
   constexpr int kRows = 256;
   const int P = options_.width;
-  MatrixXd packed(coefficients.rows(), kRows);
-  for (int row = 0; row < mass_.size(); row += kRows) {
-    const int rows = std::min(kRows, mass_.size() - row);
-    for (int j = 0; j < basis_.blocks(); ++j) {
-      const double* const block = basis_.block(j) + at(row) * at(P);
-      packed.block(Index{j} * P, 0, P, rows) = Eigen::Map<const MatrixXd>(block, P, rows);
+  for_each_piece(mass_.size(), options_.threads, [&](int, int begin, int end) {
+    MatrixXd packed(coefficients.rows(), kRows);
+    for (int row = begin; row < end; row += kRows) {
+      const int rows = std::min(kRows, end - row);
+      for (int j = 0; j < basis_.blocks(); ++j) {
+        const double* const block = basis_.block(j) + at(row) * at(P);
+        packed.block(Index{j} * P, 0, P, rows) = Eigen::Map<const MatrixXd>(block, P, rows);
+      }
+      write(row, product_at_b(packed.leftCols(rows), coefficients));
     }
-    write(row, product_at_b(packed.leftCols(rows), coefficients));
-  }
+  });
 }
 
 void BlockLanczos::write_vectors(int first, int count, double* X, std::int64_t stride) const {

@@ -15,6 +15,7 @@ struct LanczosOptions {
   int width = 8;  ///< vectors in a block, 8 or 16: more is faster to solve, but a larger basis
   double tolerance = 1e-9;            ///< of a pair, beside |lambda| + scale
   int most_blocks = 64;               ///< of the basis
+  int threads = 1;                    ///< 0: all cores
   std::function<void(int)> on_solve;  ///< after so many solves; may throw
 };
 

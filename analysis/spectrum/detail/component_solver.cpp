@@ -46,7 +46,10 @@ std::vector<Component> split_into_components(const Operator& op) {
 }
 
 ComponentSolver::ComponentSolver(Component component, const ComponentSolveOptions& options)
-    : component_(std::move(component)), dense_(component_.size()), check_(component_.mass) {
+    : component_(std::move(component)),
+      dense_(component_.size()),
+      check_(component_.mass, options.threads),
+      threads_(options.threads) {
   if (suits_dense(component_.size(), options.count)) return;
   const bool by_positions = options.count <= kGeometricCount && component_.positions.rows() > 0;
   slicer_.emplace(component_.stiffness, component_.mass,
@@ -57,6 +60,7 @@ ComponentSolver::ComponentSolver(Component component, const ComponentSolveOption
                                  .has_constants = component_.has_constants,
                                  .backend = options.backend,
                                  .keep_all = options.keep_all,
+                                 .threads = options.threads,
                                  .on_solve = options.on_solve});
 }
 
@@ -92,7 +96,7 @@ void ComponentSolver::take_over(Index certain, double bound) {
   const Pencil own = slicer_ ? Pencil{} : make_pencil(component_.stiffness, component_.mass);
   const VectorXd errors = pair_errors(slicer_ ? slicer_->factor().pencil() : own,
                                       slicer_ ? slicer_->factor().order() : as_given,
-                                      component_.lumped_mass, pairs(), certain_, fresh);
+                                      component_.lumped_mass, pairs(), certain_, fresh, threads_);
   errors_.insert(errors_.end(), errors.begin(), errors.end());
   const Index before = std::max(pairs().first(), certain_ - SpectrumSlicer::kNeighbours);
   check_.add(pairs(), before, certain_, fresh);

@@ -36,6 +36,7 @@ struct ComponentSolveOptions {
   bool certify = true;
   FactorizationBackend backend = FactorizationBackend::automatic;
   bool keep_all = false;              ///< as SlicingOptions has it
+  int threads = 1;                    ///< 0: all cores. Results do not depend on it
   std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
 };
 
@@ -97,6 +98,7 @@ class ComponentSolver {
   PairWindow dense_;
   std::optional<SpectrumSlicer> slicer_;
   OrthonormalityCheck check_;
+  int threads_;
   std::vector<double> errors_;
   Eigen::Index certain_ = 0;
   double bound_ = SlicingState::kNowhere;

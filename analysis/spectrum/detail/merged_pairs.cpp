@@ -72,6 +72,7 @@ MergedPairs::MergedPairs(const Operator& op, const SpectrumOptions& options, Vec
                                                    .certify = options.certify,
                                                    .backend = options.backend,
                                                    .keep_all = !forgets_,
+                                                   .threads = options.threads,
                                                    .on_solve = [this](int solves) {
                                                      // An estimate; never show more than all.
                                                      solves_ = std::min(solves_ + solves,

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "timbre/analysis/core/matrix_product.h"
+#include "timbre/analysis/core/threads.h"
 #include "timbre/analysis/spectrum/detail/aligned_array.h"
+#include "timbre/analysis/spectrum/detail/block_basis.h"
 
 namespace timbre::detail {
 
@@ -16,36 +19,68 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd pair_errors(const Pencil& pencil, const std::vector<int>& order, const VectorXd& lumped,
-                     const PairWindow& pairs, Index first, Index count) {
-  constexpr int kWidth = kPencilWidth;
-  VectorXd errors(count);
-  const auto numbers = static_cast<std::size_t>(pencil.size) * kWidth;
-  AlignedArray vectors(numbers);
-  AlignedArray rests(numbers);
-  const auto row_of = [&](int i) { return order.empty() ? i : order[static_cast<std::size_t>(i)]; };
-  for (Index done = 0; done < count; done += kWidth) {
-    const auto some = static_cast<int>(std::min<Index>(kWidth, count - done));
+namespace {
+
+// Some pairs at a time, in memory of their own.
+class ErrorsOfSome {
+ public:
+  ErrorsOfSome(const Pencil& pencil, const std::vector<int>& order, const VectorXd& lumped)
+      : pencil_(pencil),
+        order_(order),
+        lumped_(lumped),
+        vectors_(static_cast<std::size_t>(pencil.size) * kPencilWidth),
+        rests_(vectors_.size()) {}
+
+  void compute(const PairWindow& pairs, Index first, int count, double* errors) {
+    constexpr int kWidth = kPencilWidth;
     std::array<double, kWidth> values{};
     std::array<const double*, kWidth> columns{};
     for (int c = 0; c < kWidth; ++c) {  // the last block repeats its last column
-      const Index pair = first + done + std::min(c, some - 1);
+      const Index pair = first + std::min(c, count - 1);
       values[static_cast<std::size_t>(c)] = pairs.value(pair);
       columns[static_cast<std::size_t>(c)] = pairs.column(pair);
     }
-    for (int i = 0; i < pencil.size; ++i) {
-      double* const row = vectors.data() + static_cast<std::ptrdiff_t>(i) * kWidth;
+    for (int i = 0; i < pencil_.size; ++i) {
+      double* const row = vectors_.data() + static_cast<std::ptrdiff_t>(i) * kWidth;
       for (std::size_t c = 0; c < kWidth; ++c) row[c] = columns[c][row_of(i)];
     }
-    eigenpair_rests(pencil, values.data(), vectors.data(), rests.data());
+    eigenpair_rests(pencil_, values.data(), vectors_.data(), rests_.data());
     std::array<double, kWidth> sums{};
-    for (int i = 0; i < pencil.size; ++i) {
-      const double weight = 1.0 / lumped[row_of(i)];
-      const double* const row = rests.data() + static_cast<std::ptrdiff_t>(i) * kWidth;
+    for (int i = 0; i < pencil_.size; ++i) {
+      const double weight = 1.0 / lumped_[row_of(i)];
+      const double* const row = rests_.data() + static_cast<std::ptrdiff_t>(i) * kWidth;
       for (std::size_t c = 0; c < kWidth; ++c) sums[c] += weight * row[c] * row[c];
     }
-    for (int c = 0; c < some; ++c) errors[done + c] = std::sqrt(sums[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < count; ++c) errors[c] = std::sqrt(sums[static_cast<std::size_t>(c)]);
   }
+
+ private:
+  [[nodiscard]] int row_of(int i) const {
+    return order_.empty() ? i : order_[static_cast<std::size_t>(i)];
+  }
+
+  const Pencil& pencil_;
+  const std::vector<int>& order_;
+  const VectorXd& lumped_;
+  AlignedArray vectors_;
+  AlignedArray rests_;
+};
+
+}  // namespace
+
+VectorXd pair_errors(const Pencil& pencil, const std::vector<int>& order, const VectorXd& lumped,
+                     const PairWindow& pairs, Index first, Index count, int threads) {
+  VectorXd errors(count);
+  const Index workers = threads > 0 ? threads : hardware_threads();
+  parallel_for(workers, threads, [&](std::int64_t worker) {
+    std::optional<ErrorsOfSome> some;
+    for (Index done = worker * kPencilWidth; done < count; done += workers * kPencilWidth) {
+      if (!some) some.emplace(pencil, order, lumped);
+      some->compute(pairs, first + done,
+                    static_cast<int>(std::min<Index>(kPencilWidth, count - done)),
+                    errors.data() + done);
+    }
+  });
   return errors;
 }
 
@@ -71,28 +106,36 @@ MatrixXd random_signs(Index first, Index count) {
 
 }  // namespace
 
-OrthonormalityCheck::OrthonormalityCheck(const Eigen::SparseMatrix<double>& M) : mass_(M) {}
+OrthonormalityCheck::OrthonormalityCheck(const Eigen::SparseMatrix<double>& M, int threads)
+    : mass_(M), threads_(threads) {}
+
+double OrthonormalityCheck::worst_of(const PairWindow& pairs, Index before, Index begin,
+                                     Index count) const {
+  const MatrixXd mass_fresh = mass_ * pairs.vectors(begin, count);
+  MatrixXd gram = product_at_b(pairs.vectors(before, begin + count - before), mass_fresh);
+  gram.bottomRows(count) -= MatrixXd::Identity(count, count);
+  const double worst = largest(gram);
+  if (before == 0) return worst;
+  const MatrixXd products = product_at_b(sums_, mass_fresh);
+  const MatrixXd means = products.colwise().norm() / std::sqrt(static_cast<double>(kSums));
+  return std::max(worst, largest(means));
+}
 
 void OrthonormalityCheck::add(const PairWindow& pairs, Index before, Index first, Index count) {
   constexpr Index kColumns = 16;  // at a time, so that M times them needs little memory
-  MatrixXd mass_vectors(pairs.rows(), std::min(kColumns, count));
   if (sums_.size() == 0) sums_.setZero(pairs.rows(), kSums);
-  for (Index done = 0; done < count; done += kColumns) {
-    const Index some = std::min(kColumns, count - done);
-    const Index begin = first + done;
-    const auto fresh = pairs.vectors(begin, some);
-    auto mass_fresh = mass_vectors.leftCols(some);
-    mass_fresh.noalias() = mass_ * fresh;
-    MatrixXd gram = product_at_b(pairs.vectors(before, begin + some - before), mass_fresh);
-    gram.bottomRows(some) -= MatrixXd::Identity(some, some);
-    worst_ = std::max(worst_, largest(gram));
-    if (before > 0) {
-      const MatrixXd products = product_at_b(sums_, mass_fresh);
-      const MatrixXd means = products.colwise().norm() / std::sqrt(static_cast<double>(kSums));
-      worst_ = std::max(worst_, largest(means));
-    }
-    sums_ += product_a_b(fresh, random_signs(begin, some));
-  }
+  const Index groups = (count + kColumns - 1) / kColumns;
+  VectorXd worst(groups);
+  parallel_for(groups, threads_, [&](std::int64_t group) {
+    const Index done = group * kColumns;
+    worst[group] = worst_of(pairs, before, first + done, std::min(kColumns, count - done));
+  });
+  worst_ = std::max(worst_, largest(worst));
+  const MatrixXd signs = random_signs(first, count);
+  for_each_piece(static_cast<int>(pairs.rows()), threads_, [&](int, int begin, int end) {
+    sums_.middleRows(begin, end - begin) +=
+        product_a_b(pairs.vectors(first, count).middleRows(begin, end - begin), signs);
+  });
 }
 
 }  // namespace timbre::detail

@@ -17,9 +17,10 @@ namespace timbre::detail {
 /// @param pencil  K and M
 /// @param order   row i of the pencil is row order[i] of the vectors; empty: the same
 /// @param lumped  D, positive, in the order of the vectors
+/// @param threads 0: all cores
 [[nodiscard]] Eigen::VectorXd pair_errors(const Pencil& pencil, const std::vector<int>& order,
                                           const Eigen::VectorXd& lumped, const PairWindow& pairs,
-                                          Eigen::Index first, Eigen::Index count);
+                                          Eigen::Index first, Eigen::Index count, int threads);
 
 /// Watches that a stream of vectors stays M-orthonormal. Products with those found together and the
 /// last ones before are all computed; earlier vectors are looked at through a few sums of all of
@@ -28,8 +29,9 @@ namespace timbre::detail {
 /// largest.
 class OrthonormalityCheck {
  public:
-  /// @param M  must outlive this
-  explicit OrthonormalityCheck(const Eigen::SparseMatrix<double>& M);
+  /// @param M        must outlive this
+  /// @param threads  0: all cores
+  OrthonormalityCheck(const Eigen::SparseMatrix<double>& M, int threads);
 
   /// Looks at pairs [first, first + count), which follow those of the last call, beside each other
   /// and those from `before` on.
@@ -51,7 +53,11 @@ class OrthonormalityCheck {
   }
 
  private:
+  [[nodiscard]] double worst_of(const PairWindow& pairs, Eigen::Index before, Eigen::Index begin,
+                                Eigen::Index count) const;
+
   const Eigen::SparseMatrix<double>& mass_;
+  int threads_;
   double worst_ = 0.0;
   Eigen::MatrixXd sums_;  // of all vectors so far, with random signs
 };

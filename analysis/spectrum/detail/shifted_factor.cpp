@@ -9,11 +9,11 @@ namespace timbre::detail {
 std::unique_ptr<ShiftedFactor> make_shifted_factor(const Eigen::SparseMatrix<double>& K,
                                                    const Eigen::SparseMatrix<double>& M,
                                                    const Points* positions,
-                                                   FactorizationBackend backend) {
+                                                   FactorizationBackend backend, int threads) {
   switch (backend) {
     case FactorizationBackend::automatic:
     case FactorizationBackend::supernodal:
-      return std::make_unique<SupernodalLdlt>(K, M, positions);
+      return std::make_unique<SupernodalLdlt>(K, M, positions, LdltOptions{.threads = threads});
     case FactorizationBackend::eigen:
       return make_simplicial_factor(K, M, make_eigen_ldlt());
     case FactorizationBackend::cholmod:

@@ -65,9 +65,10 @@ class ShiftedFactor {
 /// @param M          n x n, symmetric
 /// @param positions  n x 3 for an ordering that is found fast, or nullptr for one with less fill;
 ///                   other backends than `supernodal` have their own
+/// @param threads    of `supernodal`; 0: all cores. Results do not depend on it
 /// @throws Error  bad_request for a backend that this build lacks
 [[nodiscard]] std::unique_ptr<ShiftedFactor> make_shifted_factor(
     const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& M,
-    const Points* positions, FactorizationBackend backend);
+    const Points* positions, FactorizationBackend backend, int threads = 1);
 
 }  // namespace timbre::detail

@@ -26,6 +26,7 @@ struct SlicingOptions {
   /// Take the memory for all vectors at the beginning: where none will be forgotten.
   bool keep_all = false;
   std::uint64_t seed = 1;                  ///< of start vectors
+  int threads = 1;                         ///< 0: all cores. Results do not depend on it
   std::function<void(int)> on_solve = {};  ///< after so many solves with a factor; may throw
 };
 

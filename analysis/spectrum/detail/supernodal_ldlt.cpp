@@ -14,6 +14,7 @@
 #include "timbre/analysis/spectrum/detail/factor_check.h"
 #include "timbre/analysis/spectrum/detail/front.h"
 #include "timbre/analysis/spectrum/detail/panels.h"
+#include "timbre/analysis/spectrum/detail/solve_plan.h"
 #include "timbre/analysis/spectrum/detail/traversal.h"
 
 namespace timbre::detail {
@@ -48,21 +49,24 @@ std::vector<int> entry_rows(const SymbolicFactor& symbolic, const Pencil& pencil
   return rows;
 }
 
-// One workspace for each thread at work, kept for the next shift.
-class WorkspacePool {
+// Workspaces for each thread at work, kept for the next time.
+template <typename Space>
+class Pool {
  public:
   struct Return {
-    WorkspacePool* pool;
-    void operator()(FrontFactorizer* fronts) const {
+    Pool* pool;
+    void operator()(Space* space) const {
       const std::lock_guard lock(pool->mutex_);
-      pool->free_.emplace_back(fronts);
+      pool->free_.emplace_back(space);
     }
   };
-  using Loan = std::unique_ptr<FrontFactorizer, Return>;
+  using Loan = std::unique_ptr<Space, Return>;
 
-  [[nodiscard]] Loan borrow(const SymbolicFactor& symbolic) {
+  /// One that is free, or a new one made of `arguments`.
+  template <typename... Arguments>
+  [[nodiscard]] Loan borrow(const Arguments&... arguments) {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) free_.push_back(std::make_unique<FrontFactorizer>(symbolic));
+    if (free_.empty()) free_.push_back(std::make_unique<Space>(arguments...));
     Loan loan(free_.back().release(), Return{this});
     free_.pop_back();
     return loan;
@@ -70,7 +74,17 @@ class WorkspacePool {
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<FrontFactorizer>> free_;
+  std::vector<std::unique_ptr<Space>> free_;
+};
+
+// Room for as many numbers as were ever asked for.
+struct Scratch {
+  AlignedArray numbers;
+
+  [[nodiscard]] double* of_size(std::size_t size) {
+    if (numbers.size() < size) numbers = AlignedArray(size);
+    return numbers.data();
+  }
 };
 
 }  // namespace
@@ -83,6 +97,7 @@ struct SupernodalLdlt::Impl {
         layout(lay_out_panels(symbolic)),
         threads(chosen.threads > 0 ? chosen.threads : hardware_threads()),
         plan(plan_traversal(symbolic, threads)),
+        solve_plan(plan_solves(symbolic, layout)),
         entry_row(entry_rows(symbolic, pencil)),
         kernels(tile_kernels(chosen.instructions)) {}
 
@@ -153,6 +168,10 @@ struct SupernodalLdlt::Impl {
             .rows = symbolic.rows.data() + symbolic.first_row[s]};
   }
 
+  static std::size_t row_at(int row, int width) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+  }
+
   // The rows of X that the supernode coming next will read, its own and those below.
   void prefetch_rows(int s, const double* X, int width) const {
     constexpr int kLine = 64 / sizeof(double);
@@ -168,20 +187,83 @@ struct SupernodalLdlt::Impl {
     }
   }
 
+  void forward(int s, double* X, int stride, int columns) const {
+    for (int p = layout.first_panel[s]; p < layout.first_panel[s + 1]; ++p) {
+      kernels.forward(panel(s, p), X, stride, columns);
+    }
+  }
+
+  void backward(int s, double* X, int stride, int columns) const {
+    for (int p = layout.first_panel[s + 1] - 1; p >= layout.first_panel[s]; --p) {
+      kernels.backward(panel(s, p), X, stride, columns);
+    }
+  }
+
+  // In a copy of its own rows; what it hands on to the rows below its root goes to `handed`.
+  void forward_subtree(int q, double* X, int width, double* handed) const {
+    const int root = solve_plan.root[q];
+    const int first = solve_plan.first[q];
+    const auto loan = scratch.borrow();
+    double* const Y = loan->of_size(row_at(symbolic.size, width));
+    double* const own = X + row_at(symbolic.first_column[first], width);
+    double* const copy = Y + row_at(symbolic.first_column[first], width);
+    const std::size_t count =
+        row_at(symbolic.first_column[root + 1] - symbolic.first_column[first], width);
+    std::copy_n(own, count, copy);
+    const int* const rows = symbolic.rows.data() + symbolic.first_row[root];
+    const int below = symbolic.rows_below(root);
+    for (int i = 0; i < below; ++i) std::fill_n(Y + row_at(rows[i], width), width, 0.0);
+    for (int s = first; s <= root; ++s) {
+      if (s < root) prefetch_rows(s + 1, Y, width);
+      forward(s, Y, width, width);
+    }
+    std::copy_n(copy, count, own);
+    for (int i = 0; i < below; ++i) {
+      std::copy_n(Y + row_at(rows[i], width), width, handed + row_at(i, width));
+    }
+  }
+
+  void add_handed(int q, const double* handed, double* X, int width) const {
+    const int root = solve_plan.root[q];
+    const int* const rows = symbolic.rows.data() + symbolic.first_row[root];
+    for (int i = 0; i < symbolic.rows_below(root); ++i) {
+      double* const row = X + row_at(rows[i], width);
+      for (int c = 0; c < width; ++c)
+        row[c] += handed[row_at(i, width) + static_cast<std::size_t>(c)];
+    }
+  }
+
+  void backward_subtree(int q, double* X, int width) const {
+    for (int s = solve_plan.root[q]; s >= solve_plan.first[q]; --s) {
+      if (s > solve_plan.first[q]) prefetch_rows(s - 1, X, width);
+      backward(s, X, width, width);
+    }
+  }
+
   void solve(double* X, int width) const {
-    const int last = symbolic.supernodes() - 1;
-    for (int s = 0; s <= last; ++s) {
-      if (s < last) prefetch_rows(s + 1, X, width);
-      for (int p = layout.first_panel[s]; p < layout.first_panel[s + 1]; ++p) {
-        kernels.forward(panel(s, p), X, width);
+    const int subtrees = solve_plan.subtrees();
+    const auto loan = scratch.borrow();
+    double* const handed = loan->of_size(static_cast<std::size_t>(solve_plan.handed.back()) *
+                                         static_cast<std::size_t>(width));
+    const auto handed_by = [&](int q) {
+      return handed + solve_plan.handed[q] * static_cast<std::int64_t>(width);
+    };
+    parallel_for(subtrees, threads, [&](std::int64_t q) {
+      forward_subtree(static_cast<int>(q), X, width, handed_by(static_cast<int>(q)));
+    });
+    for (int q = 0; q < subtrees; ++q) add_handed(q, handed_by(q), X, width);
+    // Towards the root there is one path; its threads take some right-hand sides each.
+    const int columns =
+        subtrees > 0 && threads > 1 ? std::max(width / 2, kernels.least_columns) : width;
+    parallel_for(width / columns, threads, [&](std::int64_t part) {
+      double* const some = X + part * columns;
+      for (const int s : solve_plan.top) forward(s, some, width, columns);
+      for (auto s = solve_plan.top.rbegin(); s != solve_plan.top.rend(); ++s) {
+        backward(*s, some, width, columns);
       }
-    }
-    for (int s = last; s >= 0; --s) {
-      if (s > 0) prefetch_rows(s - 1, X, width);
-      for (int p = layout.first_panel[s + 1] - 1; p >= layout.first_panel[s]; --p) {
-        kernels.backward(panel(s, p), X, width);
-      }
-    }
+    });
+    parallel_for(subtrees, threads,
+                 [&](std::int64_t q) { backward_subtree(static_cast<int>(q), X, width); });
   }
 
   LdltOptions options;
@@ -190,6 +272,7 @@ struct SupernodalLdlt::Impl {
   PanelLayout layout;
   int threads;
   Traversal plan;
+  SolvePlan solve_plan;
   std::vector<int> entry_row;
   const TileKernels& kernels;
 
@@ -199,7 +282,8 @@ struct SupernodalLdlt::Impl {
   std::vector<int> order;
   std::vector<PivotCounts> counts;
   std::vector<AlignedArray> arenas;  // of the subtrees, and last of the top
-  WorkspacePool workspaces;
+  Pool<FrontFactorizer> workspaces;
+  mutable Pool<Scratch> scratch;  // of solves
 };
 
 SupernodalLdlt::SupernodalLdlt(const Eigen::SparseMatrix<double>& K,

@@ -17,7 +17,7 @@ namespace timbre::detail {
 
 struct LdltOptions {
   OrderingMethod ordering = OrderingMethod::automatic;
-  int threads = 1;  ///< of a factorisation; 0: all cores. The factor does not depend on it
+  int threads = 1;  ///< of factorisations and solves; 0: all cores. Results do not depend on it
   /// Solve for random right-hand sides after each factorisation and look at what comes back.
   /// About the time of 16 solves; without it `near_singular` only knows the pivots.
   bool check = true;

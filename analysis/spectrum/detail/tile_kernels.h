@@ -56,12 +56,14 @@ struct TileKernels {
   /// both have padded(width) columns of that length.
   void (*invert)(const double* L, int width, double* X);
 
-  /// X := L^-1 X for the panel's columns, and its share subtracted below. X is row-major with
-  /// `chunk` = 8, 16 or 32 columns.
-  void (*forward)(const Panel& panel, double* X, int chunk);
+  /// X := L^-1 X for the panel's columns, and its share subtracted below. Rows of X begin `stride`
+  /// apart, at most kMaxChunk, and have 8, 16 or 32 columns, or `least_columns`.
+  void (*forward)(const Panel& panel, double* X, int stride, int columns);
 
   /// X := L^-T D^-1 X for the panel's columns; the rows below are final.
-  void (*backward)(const Panel& panel, double* X, int chunk);
+  void (*backward)(const Panel& panel, double* X, int stride, int columns);
+
+  int least_columns;  ///< 4 or 8
 };
 
 /// Whether this processor, and this build, can run such kernels.

@@ -269,31 +269,45 @@ struct Kernels {
     }
   }
 
-  template <int Columns>
-  static void forward_in_slices(const Panel& panel, double* X, int chunk) {
-    for (int c = 0; c < chunk; c += Columns) forward_slice<Columns / Lanes>(panel, X + c, chunk);
-  }
+  static constexpr int kLeast = Lanes < 4 ? 4 : Lanes;
 
   template <int Columns>
-  static void backward_in_slices(const Panel& panel, double* X, int chunk) {
-    for (int c = 0; c < chunk; c += Columns) backward_slice<Columns / Lanes>(panel, X + c, chunk);
+  static void forward_in_slices(const Panel& panel, double* X, int stride, int columns) {
+    for (int c = 0; c < columns; c += Columns) {
+      forward_slice<Columns / Lanes>(panel, X + c, stride);
+    }
   }
 
-  static void forward(const Panel& panel, double* X, int chunk) {
-    if (chunk == 8) return forward_in_slices<8>(panel, X, chunk);
-    if (chunk == 16) return forward_in_slices<min(16, kSlice)>(panel, X, chunk);
-    forward_in_slices<kSlice>(panel, X, chunk);
+  template <int Columns>
+  static void backward_in_slices(const Panel& panel, double* X, int stride, int columns) {
+    for (int c = 0; c < columns; c += Columns) {
+      backward_slice<Columns / Lanes>(panel, X + c, stride);
+    }
   }
 
-  static void backward(const Panel& panel, double* X, int chunk) {
-    if (chunk == 8) return backward_in_slices<8>(panel, X, chunk);
-    if (chunk == 16) return backward_in_slices<min(16, kSlice)>(panel, X, chunk);
-    backward_in_slices<kSlice>(panel, X, chunk);
+  static void forward(const Panel& panel, double* X, int stride, int columns) {
+    if (columns == kLeast) return forward_in_slices<kLeast>(panel, X, stride, columns);
+    if (columns == 8) return forward_in_slices<8>(panel, X, stride, columns);
+    if (columns == 16) return forward_in_slices<min(16, kSlice)>(panel, X, stride, columns);
+    forward_in_slices<kSlice>(panel, X, stride, columns);
+  }
+
+  static void backward(const Panel& panel, double* X, int stride, int columns) {
+    if (columns == kLeast) return backward_in_slices<kLeast>(panel, X, stride, columns);
+    if (columns == 8) return backward_in_slices<8>(panel, X, stride, columns);
+    if (columns == 16) return backward_in_slices<min(16, kSlice)>(panel, X, stride, columns);
+    backward_in_slices<kSlice>(panel, X, stride, columns);
   }
 
   static constexpr TileKernels table() {
-    return {subtract_products, multiply_by_transpose, eliminate_one, eliminate_two, invert, forward,
-            backward};
+    return {subtract_products,
+            multiply_by_transpose,
+            eliminate_one,
+            eliminate_two,
+            invert,
+            forward,
+            backward,
+            kLeast};
   }
 };
 

@@ -269,6 +269,20 @@ TEST(ComputeSpectrum, FindsAllOfSmallToriWhateverTheCount) {
   }
 }
 
+TEST(ComputeSpectrum, IsTheSameToTheBitOnAnyNumberOfThreads) {
+  for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
+    const Operator op = compute_operator(make_ellipsoid(1.0, 0.8, 0.6, 32), {.mass = mass});
+    const Spectrum one = compute_spectrum(op, {.count = 70, .threads = 1});
+    for (const int threads : {2, 3, 0}) {
+      const Spectrum many = compute_spectrum(op, {.count = 70, .threads = threads});
+      EXPECT_EQ(many.values, one.values) << threads;
+      EXPECT_EQ(many.vectors, one.vectors) << threads;
+      EXPECT_EQ(many.residuals, one.residuals) << threads;
+      EXPECT_EQ(many.orthonormality, one.orthonormality) << threads;
+    }
+  }
+}
+
 TEST(ComputeSpectrum, IsAsGoodAsAskedForAndCompleteAtAnyTolerance) {
   const Operator op = compute_operator(make_ellipsoid(1.0, 0.8, 0.6, 16));
   const Spectrum best = compute_spectrum(op, {.count = 250, .tolerance = 1e-9});

@@ -15,6 +15,8 @@
 
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/operators/operator.h"
+#include "timbre/analysis/spectrum/detail/panels.h"
+#include "timbre/analysis/spectrum/detail/solve_plan.h"
 #include "timbre/datasets/analytic.h"
 #include "timbre/tests/support/refused_request.h"
 #include "timbre/tests/support/sparse_matrices.h"
@@ -321,6 +323,47 @@ TEST(SupernodalLdlt, FactorOrderSkipsThePermutation) {
       B(ldlt.symbolic().order, Eigen::all);
   ldlt.solve_in_factor_order(X.data(), 8);
   EXPECT_EQ(MatrixXd(X), MatrixXd(expected(ldlt.symbolic().order, Eigen::all)));
+}
+
+// Large enough for subtrees that are solved at the same time.
+TEST(SupernodalLdlt, SolvesOfLargeFactorsDoNotDependOnThreads) {
+  const TriangleMesh mesh = make_sphere(40);
+  const Operator op = compute_operator(mesh);
+  const MatrixXd B = random_block(op.stiffness.rows(), 56);  // all widths of a pass
+  MatrixXd expected;
+  for (const int threads : {1, 2, 3, 8}) {
+    SupernodalLdlt ldlt(op.stiffness, op.mass, &mesh.vertices, {.threads = threads});
+    EXPECT_LT(ldlt.factorize(50.0).backward_error, 1e-13);
+    MatrixXd X = B;
+    ldlt.solve(X);
+    if (threads == 1) expected = X;
+    EXPECT_EQ(X, expected) << threads;
+  }
+}
+
+TEST(PlanSolves, PutsEachSupernodeInOnePart) {
+  const TriangleMesh mesh = make_sphere(40);
+  const Operator op = compute_operator(mesh);
+  const Pencil pencil = make_pencil(op.stiffness, op.mass);
+  const SymbolicFactor symbolic = analyse(
+      pencil, compute_ordering(adjacency(pencil), &mesh.vertices, OrderingMethod::geometric));
+  const SolvePlan plan = plan_solves(symbolic, lay_out_panels(symbolic));
+  ASSERT_GE(plan.subtrees(), 2);
+  std::vector<int> part(static_cast<std::size_t>(symbolic.supernodes()), -2);
+  for (int q = 0; q < plan.subtrees(); ++q) {
+    for (int s = plan.first[q]; s <= plan.root[q]; ++s) part[s] = q;
+    EXPECT_EQ(plan.handed[q + 1] - plan.handed[q], symbolic.rows_below(plan.root[q]));
+  }
+  for (const int s : plan.top) {
+    EXPECT_EQ(part[s], -2);
+    part[s] = -1;
+  }
+  for (int s = 0; s < symbolic.supernodes(); ++s) {
+    ASSERT_NE(part[s], -2);
+    if (symbolic.parent[s] == -1) continue;
+    const int of_parent = part[symbolic.parent[s]];
+    EXPECT_TRUE(of_parent == part[s] || of_parent == -1);
+  }
 }
 
 TEST(SupernodalLdlt, SaysHowMuchMemoryItWillTake) {

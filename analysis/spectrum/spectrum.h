@@ -40,6 +40,17 @@ struct Certificate {
   std::vector<InertiaCount> shifts;  ///< of each component that was not solved densely
 };
 
+/// Seconds of wall time by what was done.
+struct SpectrumPhases {
+  double ordering = 0.0;           ///< of unknowns, and the structure of the factor
+  double factorization = 0.0;      ///< at all shifts, with a check of each
+  double solves = 0.0;             ///< with the factors
+  double orthogonalization = 0.0;  ///< of Lanczos vectors
+  double projection = 0.0;         ///< the small eigenproblems
+  double vectors = 0.0;            ///< from the basis to the eigenvectors
+  double checks = 0.0;             ///< residuals and orthonormality
+};
+
 /// The lowest eigenpairs of `W phi = lambda M phi`. Always checked: whoever holds a
 /// Spectrum may rely on `residuals`, and on `certificate` where it is not empty.
 struct Spectrum {
@@ -51,6 +62,7 @@ struct Spectrum {
   double orthonormality = 0.0;
   int zeros = 0;  ///< leading eigenvalues that are exactly 0: `count_zeros`
   std::optional<Certificate> certificate;  ///< empty if not asked for
+  SpectrumPhases phases;                   ///< since the start, or since `SpectrumStream::resume`
 };
 
 /// Computes the `options.count` lowest eigenpairs of a Laplacian.

@@ -1,4 +1,8 @@
+#include <array>
+#include <iomanip>
 #include <memory>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "timbre/analysis/core/array_file.h"
@@ -21,6 +25,7 @@ struct Arguments {
   OperatorOptions op;
   SpectrumOptions spectrum;
   StreamOptions stream;
+  bool timings = false;
 };
 
 void add_sparse(std::vector<NamedArray>& arrays, const std::string& name,
@@ -125,6 +130,39 @@ nlohmann::json describe(const std::string& mesh, const Operator& op, const Spect
           {"mollified_by", op.mollified_by}};
 }
 
+struct NamedPhase {
+  const char* name;
+  double SpectrumPhases::*seconds;
+};
+
+constexpr std::array kPhases = {NamedPhase{"ordering", &SpectrumPhases::ordering},
+                                NamedPhase{"factorization", &SpectrumPhases::factorization},
+                                NamedPhase{"solves", &SpectrumPhases::solves},
+                                NamedPhase{"orthogonalization", &SpectrumPhases::orthogonalization},
+                                NamedPhase{"projection", &SpectrumPhases::projection},
+                                NamedPhase{"vectors", &SpectrumPhases::vectors},
+                                NamedPhase{"checks", &SpectrumPhases::checks}};
+
+nlohmann::json to_json(const SpectrumPhases& phases) {
+  nlohmann::json seconds;
+  for (const NamedPhase& phase : kPhases) seconds[phase.name] = phases.*phase.seconds;
+  return seconds;
+}
+
+// Seconds, one step a line, phases of the spectrum below it.
+void say_timings(const nlohmann::json& timings, const Context& context) {
+  const auto say = [&](const std::string& name, double seconds) {
+    std::ostringstream line;
+    line << std::left << std::setw(20) << name << std::right << std::fixed << std::setprecision(3)
+         << std::setw(9) << seconds << " s";
+    context.complain(line.str());
+  };
+  for (const char* const step : {"read", "operator", "spectrum"}) say(step, timings[step]);
+  for (const NamedPhase& phase : kPhases) {
+    say(std::string("  ") + phase.name, timings["phases"][phase.name]);
+  }
+}
+
 void run(const Arguments& args, const Context& context) {
   require_outputs(args, context);
   Stopwatch watch;
@@ -151,6 +189,7 @@ void run(const Arguments& args, const Context& context) {
                                 : compute_spectrum(op, options);
   });
   timings["spectrum"] = watch.lap();
+  timings["phases"] = to_json(found.phases);
   if (found.values.size() < options.count) {
     context.note(args.mesh + ": has only " + std::to_string(found.values.size()) +
                  " eigenpairs, one for each row of its matrices");
@@ -159,7 +198,8 @@ void run(const Arguments& args, const Context& context) {
     write_spectrum(context, file.mesh, op, found);
   }
   nlohmann::json document = document_of(found);
-  document["timings"] = timings;
+  if (args.timings) say_timings(timings, context);
+  document["timings"] = std::move(timings);
   context.answer(std::move(document), to_prose(found, context.output));
 }
 
@@ -185,6 +225,7 @@ void add_spectrum(CLI::App& timbre, Context& context) {
       "--float32", [args] { args->stream.type = ElementType::float32; },
       "eigenfunctions of F.npy in single precision");
   command.add_flag("--resume", args->stream.resume, "go on with an unfinished F.npy");
+  command.add_flag("--timings", args->timings, "show on stderr where the time goes");
   add_read_options(command, context);
   add_threads_option(command, context);
   add_common_options(command, context, true);

@@ -27,12 +27,14 @@ BlockLanczos::BlockLanczos(const ShiftedFactor& factor, LanczosOptions options)
       projected_(options_.width) {}
 
 void BlockLanczos::solve(double* X) {
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::solves);
   factor_.solve_in_factor_order(X, options_.width);
   if (options_.on_solve) options_.on_solve(options_.width);
 }
 
 // One step of inverse iteration on random vectors that have a share of every unknown.
 void BlockLanczos::start() {
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::orthogonalization);
   basis_.clear();
   projected_.clear();
   is_exhausted_ = false;
@@ -61,6 +63,7 @@ void BlockLanczos::start() {
 // Z holds M V_j. What the recurrence knows is taken off first, so that one pass over all blocks is
 // enough: it only removes rounding.
 void BlockLanczos::step() {
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::orthogonalization);
   constexpr int kPeriod = 3;
   constexpr int kPasses = 3;
   constexpr double kMostDrift = 1e-5;
@@ -104,6 +107,7 @@ void BlockLanczos::step() {
 }
 
 bool BlockLanczos::try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing) {
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::projection);
   small_ = timbre::detail::solve(projected_);
   const auto m = small_.values.size();
   const MatrixXd tails = last_factor_ * small_.vectors.bottomRows(options_.width);

@@ -7,6 +7,7 @@
 
 #include "timbre/analysis/spectrum/detail/banded_eigenproblem.h"
 #include "timbre/analysis/spectrum/detail/block_basis.h"
+#include "timbre/analysis/spectrum/detail/phase_clock.h"
 #include "timbre/analysis/spectrum/detail/shifted_factor.h"
 
 namespace timbre::detail {
@@ -17,6 +18,7 @@ struct LanczosOptions {
   int most_blocks = 64;               ///< of the basis
   int threads = 1;                    ///< 0: all cores
   std::function<void(int)> on_solve;  ///< after so many solves; may throw
+  PhaseClock* clock = nullptr;        ///< must outlive the method
 };
 
 /// What one run leaves to the next.

@@ -49,7 +49,8 @@ ComponentSolver::ComponentSolver(Component component, const ComponentSolveOption
     : component_(std::move(component)),
       dense_(component_.size()),
       check_(component_.mass, options.threads),
-      threads_(options.threads) {
+      threads_(options.threads),
+      clock_(options.clock) {
   if (suits_dense(component_.size(), options.count)) return;
   const bool by_positions = options.count <= kGeometricCount && component_.positions.rows() > 0;
   slicer_.emplace(component_.stiffness, component_.mass,
@@ -61,7 +62,8 @@ ComponentSolver::ComponentSolver(Component component, const ComponentSolveOption
                                  .backend = options.backend,
                                  .keep_all = options.keep_all,
                                  .threads = options.threads,
-                                 .on_solve = options.on_solve});
+                                 .on_solve = options.on_solve,
+                                 .clock = options.clock});
 }
 
 // A Krylov method finds little room in a small space where many pairs lie close together. Slicing
@@ -91,6 +93,7 @@ void ComponentSolver::advance() {
 }
 
 void ComponentSolver::take_over(Index certain, double bound) {
+  const PhaseClock::Scope phase(clock_, &SpectrumPhases::checks);
   const Index fresh = certain - certain_;
   static const std::vector<int> as_given;
   const Pencil own = slicer_ ? Pencil{} : make_pencil(component_.stiffness, component_.mass);

@@ -38,6 +38,7 @@ struct ComponentSolveOptions {
   bool keep_all = false;              ///< as SlicingOptions has it
   int threads = 1;                    ///< 0: all cores. Results do not depend on it
   std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
+  PhaseClock* clock = nullptr;        ///< must outlive the solver
 };
 
 /// The eigenpairs of a component, from the lowest, found little by little and handed on in that
@@ -99,6 +100,7 @@ class ComponentSolver {
   std::optional<SpectrumSlicer> slicer_;
   OrthonormalityCheck check_;
   int threads_;
+  PhaseClock* clock_;
   std::vector<double> errors_;
   Eigen::Index certain_ = 0;
   double bound_ = SlicingState::kNowhere;

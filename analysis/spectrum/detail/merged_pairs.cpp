@@ -73,12 +73,14 @@ MergedPairs::MergedPairs(const Operator& op, const SpectrumOptions& options, Vec
                                                    .backend = options.backend,
                                                    .keep_all = !forgets_,
                                                    .threads = options.threads,
-                                                   .on_solve = [this](int solves) {
-                                                     // An estimate; never show more than all.
-                                                     solves_ = std::min(solves_ + solves,
-                                                                        expected_solves_ - 1);
-                                                     reporter_.advance_to(solves_);
-                                                   }});
+                                                   .on_solve =
+                                                       [this](int solves) {
+                                                         // An estimate; never show more than all.
+                                                         solves_ = std::min(solves_ + solves,
+                                                                            expected_solves_ - 1);
+                                                         reporter_.advance_to(solves_);
+                                                       },
+                                                   .clock = &clock_});
   }
   handed_on_of_.resize(components_.size());
 }
@@ -202,6 +204,7 @@ Spectrum MergedPairs::finish() {
   found.zeros = static_cast<int>((found.values.array() == 0.0).count());
   found.residuals = residuals();
   found.orthonormality = orthonormality();
+  found.phases = clock_.seconds();
   check(found);
   return found;
 }

@@ -8,6 +8,7 @@
 #include "timbre/analysis/core/progress.h"
 #include "timbre/analysis/operators/operator.h"
 #include "timbre/analysis/spectrum/detail/component_solver.h"
+#include "timbre/analysis/spectrum/detail/phase_clock.h"
 #include "timbre/analysis/spectrum/spectrum.h"
 
 namespace timbre::detail {
@@ -72,6 +73,7 @@ class MergedPairs {
   [[nodiscard]] std::vector<InertiaCount> shifts() const;
 
   SpectrumOptions options_;
+  PhaseClock clock_;
   bool forgets_;
   Eigen::Index rows_;
   Eigen::Index wanted_;

@@ -46,6 +46,13 @@ int most_blocks(const SlicingOptions& options, Index n) {
   return std::clamp(usual, 16, std::max(2, static_cast<int>(n) / width - 1));
 }
 
+std::unique_ptr<ShiftedFactor> ordered(const Eigen::SparseMatrix<double>& K,
+                                       const Eigen::SparseMatrix<double>& M,
+                                       const Points* positions, const SlicingOptions& options) {
+  const PhaseClock::Scope phase(options.clock, &SpectrumPhases::ordering);
+  return make_shifted_factor(K, M, positions, options.backend, options.threads);
+}
+
 }  // namespace
 
 SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
@@ -54,12 +61,13 @@ SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
     : mass_(M),
       options_(options),
       usual_half_(half_band(options, K.rows())),
-      factor_(make_shifted_factor(K, M, positions, options.backend, options.threads)),
+      factor_(ordered(K, M, positions, options)),
       lanczos_(*factor_, {.width = block_width(options, K.rows()),
                           .tolerance = options.tolerance,
                           .most_blocks = most_blocks(options, K.rows()),
                           .threads = options.threads,
-                          .on_solve = options.on_solve}),
+                          .on_solve = options.on_solve,
+                          .clock = options.clock}),
       spacing_(4.0 * std::numbers::pi / M.sum()),
       pairs_(K.rows()) {
   state_.slope = spacing_;
@@ -90,6 +98,11 @@ void SpectrumSlicer::advance() {
 
 void SpectrumSlicer::forget_before(Index first) {
   pairs_.drop_before(std::min(first, state_.certain - kNeighbours));
+}
+
+LdltReport SpectrumSlicer::factorize(double shift) {
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::factorization);
+  return factor_->factorize(shift);
 }
 
 void SpectrumSlicer::find_more() {
@@ -163,7 +176,7 @@ Index SpectrumSlicer::count_at_cut() {
   constexpr std::array kPlaces = {0.0, 0.15, -0.15, 0.3, -0.3};
   for (const double place : kPlaces) {
     const double bound = state_.cut + place * state_.gap;
-    const LdltReport report = factor_->factorize(bound);
+    const LdltReport report = factorize(bound);
     if (report.near_singular) continue;
     state_.cut = bound;
     return static_cast<Index>(report.negative);
@@ -183,7 +196,7 @@ double SpectrumSlicer::place_shift() {
   double high = std::numeric_limits<double>::infinity();  // too many are below
   double shift = low + (target - found) * state_.slope;
   for (int i = 0; i < kTries; ++i) {
-    const LdltReport report = factor_->factorize(shift);
+    const LdltReport report = factorize(shift);
     if (report.near_singular) {
       shift += 1e-3 * state_.slope * (1.0 + i);
       continue;
@@ -239,6 +252,7 @@ void SpectrumSlicer::accept(double shift, const BandPairs& band) {
     state_.gap = band.values[static_cast<std::size_t>(best)] - below;
     cut = below + 0.5 * state_.gap;
   }
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::vectors);
   pairs_.append(best);
   lanczos_.write_vectors(0, static_cast<int>(best), pairs_.column(state_.found), pairs_.rows());
   for (Index i = 0; i < best; ++i) {
@@ -316,7 +330,7 @@ void SpectrumSlicer::repair(double shift, const BandGoal& goal, BandPairs band) 
 void SpectrumSlicer::step_back_if_cut_is_wrong(double shift) {
   if (is_cut_counted()) return;
   if (count_at_cut() != state_.found) step_back();
-  if (factor_->factorize(shift).negative != count_) fail("two counts at one shift differ");
+  if (factorize(shift).negative != count_) fail("two counts at one shift differ");
 }
 
 // To the last shift: everything below it is certain.

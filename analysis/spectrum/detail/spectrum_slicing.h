@@ -10,6 +10,7 @@
 #include "timbre/analysis/mesh/triangle_mesh.h"
 #include "timbre/analysis/spectrum/detail/block_lanczos.h"
 #include "timbre/analysis/spectrum/detail/pair_window.h"
+#include "timbre/analysis/spectrum/detail/phase_clock.h"
 #include "timbre/analysis/spectrum/detail/shifted_factor.h"
 
 namespace timbre::detail {
@@ -28,6 +29,7 @@ struct SlicingOptions {
   std::uint64_t seed = 1;                  ///< of start vectors
   int threads = 1;                         ///< 0: all cores. Results do not depend on it
   std::function<void(int)> on_solve = {};  ///< after so many solves with a factor; may throw
+  PhaseClock* clock = nullptr;             ///< must outlive the slicer
 };
 
 /// One shift and what was found around it.
@@ -112,6 +114,7 @@ class SpectrumSlicer {
   }
 
  private:
+  LdltReport factorize(double shift);
   void find_more();
   void plan_band();
   void search_around(double shift);

@@ -76,7 +76,7 @@ double peak_megabytes() {
 // ---- timbre
 
 Pairs solve_with_timbre(const Problem& problem) {
-  Spectrum found = compute_spectrum(problem.op, {.count = problem.count});
+  Spectrum found = compute_spectrum(problem.op, {.count = problem.count, .threads = 1});
   return {std::move(found.values), std::move(found.vectors)};
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -258,9 +259,7 @@ struct SupernodalLdlt::Impl {
     parallel_for(width / columns, threads, [&](std::int64_t part) {
       double* const some = X + part * columns;
       for (const int s : solve_plan.top) forward(s, some, width, columns);
-      for (auto s = solve_plan.top.rbegin(); s != solve_plan.top.rend(); ++s) {
-        backward(*s, some, width, columns);
-      }
+      for (const int s : std::views::reverse(solve_plan.top)) backward(s, some, width, columns);
     });
     parallel_for(subtrees, threads,
                  [&](std::int64_t q) { backward_subtree(static_cast<int>(q), X, width); });

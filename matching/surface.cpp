@@ -204,9 +204,11 @@ MatchSurface prepare_surface(const TriangleMesh& mesh, const SurfaceOptions& opt
                     std::to_string(kLeastVertices));
   }
   const Operator op = compute_operator(part.mesh);
-  MatchSurface s = prepared(
-      part.mesh, op,
-      compute_spectrum(op, {.count = options.eigenpairs, .progress = options.progress}), options);
+  MatchSurface s = prepared(part.mesh, op,
+                            compute_spectrum(op, {.count = options.eigenpairs,
+                                                  .threads = options.threads,
+                                                  .progress = options.progress}),
+                            options);
   s.vertex = part.vertex;
   s.file_vertices = mesh.vertices.rows();
   s.component_share = part.share;

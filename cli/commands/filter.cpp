@@ -95,6 +95,7 @@ void add_filter(CLI::App& timbre, Context& context) {
   add_operator_options(command, args->op);
   add_boundary_option(command, args->op);
   add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, true);
   command.footer(
       "Filtered coordinates go to a mesh file, -o F.ply (.off, .obj, .stl, .vtk, .glb; - is PLY);\n"

@@ -106,8 +106,9 @@ Problem pose(const FilterArguments& args, const Context& context) {
   problem.functions = functions_of(args, context, problem.mesh);
   for_file(args.mesh, [&] {
     problem.op = compute_operator(problem.mesh, args.op);
-    problem.spectrum = compute_spectrum(
-        problem.op, {.count = eigenpairs_for(args, problem.op), .progress = context.progress()});
+    problem.spectrum = compute_spectrum(problem.op, {.count = eigenpairs_for(args, problem.op),
+                                                     .threads = context.threads,
+                                                     .progress = context.progress()});
   });
   return problem;
 }

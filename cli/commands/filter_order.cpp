@@ -69,8 +69,10 @@ void run_nodal_domains(const FilterArguments& args, const Context& context) {
   const MeshFile file = load_mesh(context, args.mesh);
   const Spectrum spectrum = for_file(args.mesh, [&] {
     const Operator op = compute_operator(file.mesh, args.op);
-    return at_vertices(compute_spectrum(op, {.count = number + 2, .progress = context.progress()}),
-                       op);
+    return at_vertices(
+        compute_spectrum(
+            op, {.count = number + 2, .threads = context.threads, .progress = context.progress()}),
+        op);
   });
   if (number >= spectrum.values.size()) {
     throw Error(

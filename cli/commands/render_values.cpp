@@ -46,8 +46,10 @@ Values values_of_file(const RenderValues& args, const Context& context, const Tr
 Values eigenfunction_of(const RenderValues& args, const Context& context,
                         const TriangleMesh& mesh) {
   const Operator op = compute_operator(mesh, args.op);
-  const Spectrum spectrum = compute_spectrum(
-      op, {.count = *args.eigenfunction + 1, .certify = false, .progress = context.progress()});
+  const Spectrum spectrum = compute_spectrum(op, {.count = *args.eigenfunction + 1,
+                                                  .certify = false,
+                                                  .threads = context.threads,
+                                                  .progress = context.progress()});
   if (*args.eigenfunction >= spectrum.vectors.cols()) {
     throw bad_option("eigenfunction",
                      "the mesh has only " + std::to_string(spectrum.vectors.cols()) + ", from 0");
@@ -60,8 +62,10 @@ Values eigenfunction_of(const RenderValues& args, const Context& context,
 Values signature_of(const RenderValues& args, const Context& context, const TriangleMesh& mesh) {
   const Operator op = compute_operator(mesh, args.op);
   const int zeros = count_zeros(op);
-  Spectrum found = compute_spectrum(
-      op, {.count = args.count + zeros, .certify = false, .progress = context.progress()});
+  Spectrum found = compute_spectrum(op, {.count = args.count + zeros,
+                                         .certify = false,
+                                         .threads = context.threads,
+                                         .progress = context.progress()});
   const Spectrum spectrum = at_unit_area(at_vertices(std::move(found), op), op.area);
   const Eigen::MatrixXd table =
       args.signature == "hks"

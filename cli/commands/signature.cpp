@@ -41,8 +41,9 @@ Solved solve(const Arguments& args, const Context& context) {
   for_file(args.mesh, [&] {
     solved.op = compute_operator(file.mesh, args.op);
     const int zeros = count_zeros(solved.op);
-    Spectrum found =
-        compute_spectrum(solved.op, {.count = args.count + zeros, .progress = context.progress()});
+    Spectrum found = compute_spectrum(
+        solved.op,
+        {.count = args.count + zeros, .threads = context.threads, .progress = context.progress()});
     solved.spectrum = at_unit_area(at_vertices(std::move(found), solved.op), solved.op.area);
   });
   const Eigen::Index used = solved.spectrum.values.size() - solved.spectrum.zeros;
@@ -139,6 +140,7 @@ void add_shared_options(CLI::App& command, Arguments& args, Context& context) {
   add_operator_options(command, args.op);
   add_boundary_option(command, args.op);
   add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, true);
 }
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -259,7 +258,9 @@ struct SupernodalLdlt::Impl {
     parallel_for(width / columns, threads, [&](std::int64_t part) {
       double* const some = X + part * columns;
       for (const int s : solve_plan.top) forward(s, some, width, columns);
-      for (const int s : std::views::reverse(solve_plan.top)) backward(s, some, width, columns);
+      for (std::size_t i = solve_plan.top.size(); i-- > 0;) {
+        backward(solve_plan.top[i], some, width, columns);
+      }
     });
     parallel_for(subtrees, threads,
                  [&](std::int64_t q) { backward_subtree(static_cast<int>(q), X, width); });

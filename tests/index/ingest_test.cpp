@@ -43,8 +43,10 @@ TEST(AddFiles, GivesTheSameBytesForAnyNumberOfThreads) {
         add_files(store, inputs, {.threads = threads}, [](const IngestResult&) {});
     EXPECT_EQ(summary.added, 12);
   }
-  Store store = Store::create(folder / "tight", kFew);  // each mesh waits until it is alone
-  (void)add_files(store, inputs, {.threads = 2, .memory = 1}, [](const IngestResult&) {});
+  {  // each mesh waits until it is alone
+    Store store = Store::create(folder / "tight", kFew);
+    (void)add_files(store, inputs, {.threads = 2, .memory = 1}, [](const IngestResult&) {});
+  }
   EXPECT_EQ(file_content(folder / "1"), file_content(folder / "tight"));
   EXPECT_EQ(Store::open(folder / "1").list()[3].label, "odd");
   EXPECT_EQ(file_content(folder / "1"), file_content(folder / "2"));

@@ -44,7 +44,7 @@ Eigen::VectorXd directed(Eigen::VectorXd along) {
 
 }  // namespace
 
-FiedlerOrder compute_fiedler_order(const Operator& op, const Progress& progress) {
+FiedlerOrder compute_fiedler_order(const Operator& op, const Progress& progress, int threads) {
   if (op.boundary == BoundaryKind::dirichlet) {
     throw Error(ErrorKind::bad_request, "", "boundary",
                 "the Fiedler vector is one of the neumann boundary");
@@ -55,8 +55,8 @@ FiedlerOrder compute_fiedler_order(const Operator& op, const Progress& progress)
   found.values.resize(op.component_area.size());
   found.gaps.resize(op.component_area.size());
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    const Spectrum spectrum =
-        compute_spectrum(part_of(op, c, rows[c], place), {.count = 3, .progress = progress});
+    const Spectrum spectrum = compute_spectrum(
+        part_of(op, c, rows[c], place), {.count = 3, .threads = threads, .progress = progress});
     const auto component = static_cast<Index>(c);
     found.values[component] = spectrum.values[1];
     found.gaps[component] = relative_gap(spectrum.values, 1);

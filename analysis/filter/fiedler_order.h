@@ -25,9 +25,11 @@ struct FiedlerOrder {
 /// that small ones beside large ones have their own. Of the two directions that one is taken which
 /// starts at the smaller vertex number; the solver's sign does not matter.
 ///
+/// @param threads  that solve a component, if it is large; 0: all cores
 /// @throws Error  bad_request for a Dirichlet boundary, under which the lowest eigenfunction is no
 ///                constant; not_converged; cancelled
 /// @see Fiedler 1975; Isenburg and Lindstrom 2005; Levy and Zhang 2009, equation 12
-[[nodiscard]] FiedlerOrder compute_fiedler_order(const Operator& op, const Progress& progress = {});
+[[nodiscard]] FiedlerOrder compute_fiedler_order(const Operator& op, const Progress& progress = {},
+                                                 int threads = 0);
 
 }  // namespace timbre

@@ -19,7 +19,8 @@ Spectrum compute_spectrum(const Operator& op, const SpectrumOptions& options) {
   return found;
 }
 
-// Measured from 10,000 to 400,000 rows: matrices, factor and basis, then the vectors.
+// Matrices, factor and basis, then the vectors. Peaks of 50,000 rows with 100 and 300 pairs and of
+// 1,000,000 with 100, triangles of degree one, were 0.6 to 0.85 of this.
 std::int64_t expected_memory(Eigen::Index rows, int count) {
   return std::int64_t{rows} * (6000 + 16 * std::int64_t{count});
 }

@@ -40,7 +40,8 @@ void run_fiedler_order(const FilterArguments& args, const Context& context) {
   require_outputs(context);
   const MeshFile file = load_mesh(context, args.mesh);
   const FiedlerOrder found = for_file(args.mesh, [&] {
-    return compute_fiedler_order(compute_operator(file.mesh, args.op), context.progress());
+    return compute_fiedler_order(compute_operator(file.mesh, args.op), context.progress(),
+                                 context.threads);
   });
   nlohmann::json components = nlohmann::json::array();
   for (Eigen::Index c = 0; c < found.values.size(); ++c) {

@@ -62,8 +62,10 @@ Spectrum spectrum_of(const Material& material, const TriangleMesh& mesh) {
   const Operator op =
       compute_operator(mesh, {.kind = parameters.operator_kind, .mass = parameters.mass});
   const int zeros = count_zeros(op);
-  Spectrum spectrum = compute_spectrum(
-      op, {.count = kPairs + zeros, .certify = false, .progress = material.pictures.progress()});
+  Spectrum spectrum = compute_spectrum(op, {.count = kPairs + zeros,
+                                            .certify = false,
+                                            .threads = material.pictures.threads(),
+                                            .progress = material.pictures.progress()});
   return at_unit_area(at_vertices(std::move(spectrum), op), op.area);
 }
 

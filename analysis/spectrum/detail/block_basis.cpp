@@ -6,30 +6,12 @@
 #include <cstdint>
 #include <utility>
 
-#include "timbre/analysis/core/threads.h"
+#include "timbre/analysis/spectrum/detail/row_pieces.h"
 
 namespace timbre::detail {
-namespace {
 
-constexpr int kChunk = 128;  // rows of a block that stay in cache while all blocks pass by
-constexpr int kPieces = 8;
-
-int pieces_of(int size) { return size < kPieces * 8 * kChunk ? 1 : kPieces; }
-
-// Where a piece begins: pieces are whole chunks.
-int piece_begin(int size, int piece) {
-  const std::int64_t chunks = (size + kChunk - 1) / kChunk;
-  return static_cast<int>(std::min<std::int64_t>(size, chunks * piece / pieces_of(size) * kChunk));
-}
-
-}  // namespace
-
-void for_each_piece(int size, int threads, const std::function<void(int, int, int)>& visit) {
-  parallel_for(pieces_of(size), threads, [&](std::int64_t i) {
-    const int piece = static_cast<int>(i);
-    visit(piece, piece_begin(size, piece), piece_begin(size, piece + 1));
-  });
-}
+// Rows of a block that stay in cache while all blocks pass by.
+constexpr int kChunk = kRowChunk;
 
 BlockMass::BlockMass(const Pencil& pencil, int threads)
     : pencil_(&pencil), threads_(threads), diagonal_(static_cast<std::size_t>(pencil.size)) {
@@ -93,7 +75,7 @@ void BlockBasis::for_each_chunk(Visit visit) const {
 // The sum of what `add(first number, rows, sum)` adds for each chunk: within pieces, then of them.
 template <typename Add>
 Square BlockBasis::sum(Eigen::Index rows, Add add) const {
-  std::vector<Square> sums(at(pieces_of(size_)), Square::Zero(rows, width_));
+  std::vector<Square> sums(at(row_pieces(size_)), Square::Zero(rows, width_));
   for_each_piece(size_, threads_, [&](int piece, int begin, int end) {
     for (int row = begin; row < end; row += kChunk) {
       add(at(row) * at(width_), std::min(kChunk, end - row), sums[at(piece)].data());

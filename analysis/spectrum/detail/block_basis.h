@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "timbre/analysis/spectrum/detail/aligned_array.h"
@@ -13,10 +12,6 @@ namespace timbre::detail {
 
 /// A square of the block width; row i, column j belongs to columns i and j of two blocks.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Calls `visit(piece, begin, end)` for pieces of the rows [0, size), which are the same for any
-/// number of threads; 0: all cores. Few rows are one piece.
-void for_each_piece(int size, int threads, const std::function<void(int, int, int)>& visit);
 
 /// M of a pencil as it acts on blocks.
 class BlockMass {

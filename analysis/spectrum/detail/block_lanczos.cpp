@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "timbre/analysis/core/matrix_product.h"
+#include "timbre/analysis/spectrum/detail/row_pieces.h"
 
 namespace timbre::detail {
 namespace {

@@ -11,7 +11,7 @@
 #include "timbre/analysis/core/matrix_product.h"
 #include "timbre/analysis/core/threads.h"
 #include "timbre/analysis/spectrum/detail/aligned_array.h"
-#include "timbre/analysis/spectrum/detail/block_basis.h"
+#include "timbre/analysis/spectrum/detail/row_pieces.h"
 
 namespace timbre::detail {
 

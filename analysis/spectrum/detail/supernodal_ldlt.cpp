@@ -257,9 +257,14 @@ struct SupernodalLdlt::Impl {
         subtrees > 0 && threads > 1 ? std::max(width / 2, kernels.least_columns) : width;
     parallel_for(width / columns, threads, [&](std::int64_t part) {
       double* const some = X + part * columns;
-      for (const int s : solve_plan.top) forward(s, some, width, columns);
-      for (std::size_t i = solve_plan.top.size(); i-- > 0;) {
-        backward(solve_plan.top[i], some, width, columns);
+      const std::vector<int>& top = solve_plan.top;
+      for (std::size_t i = 0; i < top.size(); ++i) {
+        if (i + 1 < top.size()) prefetch_rows(top[i + 1], X, width);
+        forward(top[i], some, width, columns);
+      }
+      for (std::size_t i = top.size(); i-- > 0;) {
+        if (i > 0) prefetch_rows(top[i - 1], X, width);
+        backward(top[i], some, width, columns);
       }
     });
     parallel_for(subtrees, threads,

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <future>
 #include <thread>
 
 namespace timbre {
@@ -58,8 +59,16 @@ TEST(MemoryBudget, LetsWorkThatIsTooLargeGoAlone) {
 
 TEST(MemoryBudget, OfZeroIsNone) {
   MemoryBudget budget(0);
-  const auto one = budget.take(1000);
-  const auto two = budget.take(1000);
+  std::promise<void> taken;
+  std::jthread other;
+  {
+    const auto one = budget.take(1000);
+    other = std::jthread([&] {
+      const auto two = budget.take(1000);
+      taken.set_value();
+    });
+    EXPECT_EQ(taken.get_future().wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  }
 }
 
 }  // namespace

@@ -6,47 +6,38 @@
 
 #include "timbre/analysis/spectrum/detail/aligned_array.h"
 #include "timbre/analysis/spectrum/detail/block_kernels.h"
-#include "timbre/analysis/spectrum/detail/pencil.h"
+#include "timbre/analysis/spectrum/detail/block_mass.h"
 
 namespace timbre::detail {
 
 /// A square of the block width; row i, column j belongs to columns i and j of two blocks.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// M of a pencil as it acts on blocks.
-class BlockMass {
- public:
-  /// @param pencil   must outlive this
-  /// @param threads  0: all cores
-  BlockMass(const Pencil& pencil, int threads);
-
-  [[nodiscard]] int size() const { return static_cast<int>(diagonal_.size()); }
-  [[nodiscard]] double diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
-  /// Z = M U; both size x width, row-major.
-  void multiply(const double* U, int width, double* Z) const;
-
- private:
-  const Pencil* pencil_;
-  int threads_;
-  std::vector<double> diagonal_;
-  bool is_diagonal_ = true;
-};
-
-/// What CholeskyQR found. R is upper triangular.
+/// Cholesky factor of a Gram matrix, G = R^T R with R upper triangular.
 struct BlockFactor {
   Square R;
-  double smallest_pivot = 0.0;  ///< beside the diagonal of the Gram matrix; small: nearly dependent
+  double smallest_pivot = 0.0;  ///< beside the diagonal of G; small: nearly dependent
 };
 
-/// Blocks of vectors, size x width each, and the products that a block Krylov method makes of
-/// them. Sums run over fixed pieces of the rows in a fixed order, whatever the number of threads.
+/// Where columns depend on those before, to rounding, their rest is lost in G. There R has a row of
+/// the identity: the column is freed of those before, but keeps its scale, so that another Gram
+/// matrix sees what it is.
+///
+/// @param gram   U^T M U, whose symmetric part counts
+/// @param least  norms at or below which the rest of a column is nothing: R has a row of 0
+[[nodiscard]] BlockFactor factorize_gram(const Square& gram, const Eigen::VectorXd& least);
+
+/// Blocks of vectors, size x width each, and the products that a block Krylov method in the M
+/// inner product makes of them. Memory is what they cost, so that what can be done with some rows
+/// in cache is one pass. Sums run over fixed pieces of the rows in a fixed order, whatever the
+/// number of threads.
 class BlockBasis {
  public:
+  /// @param mass     must outlive this
   /// @param width    8 or 16
   /// @param threads  0: all cores
-  BlockBasis(int size, int width, InstructionSet instructions, int threads);
+  BlockBasis(const BlockMass& mass, int width, InstructionSet instructions, int threads);
 
-  [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int blocks() const { return used_; }
   [[nodiscard]] std::size_t numbers() const;  ///< in a block
@@ -57,32 +48,44 @@ class BlockBasis {
   void append_next() { ++used_; }
   void clear() { used_ = 0; }  ///< keeps the memory
 
-  /// H = V^T Z for the blocks [first, blocks()): one square for each, below each other.
-  [[nodiscard]] Square products(const double* Z, int first = 0) const;
-  /// U -= V H, with H as `products` gives it.
-  void subtract(const Square& H, double* U, int first = 0) const;
-
   void copy(const double* from, double* to) const;
-  /// A^T B of two blocks.
-  [[nodiscard]] Square gram(const double* A, const double* B) const;
-  /// U -= V H for blocks of any owner.
-  void subtract(const double* V, const Square& H, double* U) const;
-  /// U := U T and Z := Z T.
-  void multiply_right(const Square& T, double* U, double* Z) const;
-  /// Cholesky QR: given Z = M U, makes U R^-1 of U and Z R^-1 of Z, for U^T M U = R^T R.
-  [[nodiscard]] BlockFactor orthonormalise(double* U, double* Z) const;
+
+  /// U -= V_j C for the last block but one, if there is one; then A = Z^T U.
+  [[nodiscard]] Square subtract_last_but_one(const Square& C, const double* Z, double* U) const;
+  /// U -= V_j A for the last block; then H = V^T M U as of `products`.
+  [[nodiscard]] Square subtract_last(const Square& A, double* U, int first);
+  /// H = V^T M U for the blocks [first, blocks()): one square for each, below each other.
+  [[nodiscard]] Square products(const double* U, int first);
+  /// U -= V H, with H as `products` gives it; then G = U^T M U.
+  [[nodiscard]] Square subtract(const Square& H, double* U, int first);
+  /// Cholesky QR: U := U R^-1 with R from `factorize_gram`, and columns of 0 where it has rows of
+  /// 0; then Z = M U.
+  BlockFactor orthonormalize(const Square& G, const Eigen::VectorXd& least, double* U,
+                             double* Z) const;
 
  private:
+  // Some rows, that stay in cache while all blocks pass by.
+  struct Rows {
+    int begin;
+    int count;
+  };
+
   static std::size_t at(int j) { return static_cast<std::size_t>(j); }
   [[nodiscard]] const double* place(int j) const {
     return slabs_[at(j / kBlocksInSlab)].data() + at(j % kBlocksInSlab) * numbers();
   }
+  [[nodiscard]] std::size_t offset(Rows rows) const { return at(rows.begin) * at(width_); }
+  [[nodiscard]] const double* after(int j, int first, Rows rows) const;
+  void add_products(const double* Z, int first, Rows rows, double* H) const;
+  void subtract_multiples(const double* H, int first, Rows rows, double* U) const;
   template <typename Visit>
   void for_each_chunk(Visit visit) const;
   template <typename Add>
-  [[nodiscard]] Square sum(Eigen::Index rows, Add add) const;
+  [[nodiscard]] Square sum(Eigen::Index height, Add add) const;
+  template <typename Change, typename Add>
+  [[nodiscard]] Square change_and_sum(const double* U, Eigen::Index height, Change change, Add add);
 
-  int size_;
+  const BlockMass& mass_;
   int width_;
   int threads_;
   const BlockKernels& kernels_;
@@ -90,6 +93,7 @@ class BlockBasis {
   static constexpr int kBlocksInSlab = 8;
   std::vector<AlignedArray> slabs_;
   int used_ = 0;
+  AlignedArray mass_times_;  // a block, where M is not diagonal
 };
 
 }  // namespace timbre::detail

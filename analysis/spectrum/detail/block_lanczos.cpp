@@ -22,8 +22,8 @@ BlockLanczos::BlockLanczos(const ShiftedFactor& factor, LanczosOptions options)
     : factor_(factor),
       options_(std::move(options)),
       mass_(factor.pencil(), options_.threads),
-      basis_(mass_.size(), options_.width, best_instruction_set(), options_.threads),
-      locked_(mass_.size(), options_.width, best_instruction_set(), options_.threads),
+      basis_(mass_, options_.width, best_instruction_set(), options_.threads),
+      locked_(mass_, options_.width, best_instruction_set(), options_.threads),
       Z_(basis_.numbers()),
       projected_(options_.width) {}
 
@@ -34,15 +34,7 @@ void BlockLanczos::solve(double* X) {
 }
 
 // One step of inverse iteration on random vectors that have a share of every unknown.
-void BlockLanczos::start() {
-  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::orthogonalization);
-  basis_.clear();
-  projected_.clear();
-  is_exhausted_ = false;
-  full_passes_only_ = false;
-  largest_ = 0.0;
-  drift_ = 0.0;
-  double* const U = basis_.next();
+void BlockLanczos::write_random(double* U) {
   std::mt19937_64 random(memory_.seed++);
   for (int i = 0; i < mass_.size(); ++i) {
     const double scale = std::sqrt(std::abs(mass_.diagonal(i)));
@@ -52,13 +44,33 @@ void BlockLanczos::start() {
     }
   }
   solve(U);
+}
+
+void BlockLanczos::start() {
+  const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::orthogonalization);
+  basis_.clear();
+  projected_.clear();
+  full_passes_only_ = false;
+  largest_ = 0.0;
+  drift_ = 0.0;
+  double* const U = basis_.next();
+  write_random(U);
   for (int pass = 0; pass < 2; ++pass) {
-    mass_.multiply(U, options_.width, Z_.data());
-    locked_.subtract(locked_.products(Z_.data()), U);
-    mass_.multiply(U, options_.width, Z_.data());
-    (void)basis_.orthonormalise(U, Z_.data());
+    const Square gram = locked_.subtract(locked_.products(U, 0), U, 0);
+    (void)basis_.orthonormalize(gram, Eigen::VectorXd::Zero(options_.width), U, Z_.data());
   }
   basis_.append_next();
+}
+
+// Columns of U that are nothing beside the others become random ones, as at the start, without a
+// coupling: so further copies of multiple eigenvalues are found.
+void BlockLanczos::write_random_columns(const std::vector<int>& columns, double* U) {
+  double* const random = Z_.data();
+  write_random(random);
+  const int P = options_.width;
+  for (int i = 0; i < mass_.size(); ++i) {
+    for (const int c : columns) U[at(i) * at(P) + at(c)] = random[at(i) * at(P) + at(c)];
+  }
 }
 
 // Z holds M V_j. What the recurrence knows is taken off first, so that one pass over all blocks is
@@ -66,31 +78,41 @@ void BlockLanczos::start() {
 void BlockLanczos::step() {
   const PhaseClock::Scope phase(options_.clock, &SpectrumPhases::orthogonalization);
   constexpr int kPeriod = 3;
-  constexpr int kPasses = 3;
+  constexpr int kPasses = 6;
   constexpr double kMostDrift = 1e-5;
-  constexpr double kNothing = 1e-11;  // what rounding leaves of a block inside the basis
+  constexpr double kNothing = 1e-11;  // what rounding leaves of a vector inside the basis
   const int P = options_.width;
   const int j = basis_.blocks() - 1;
   double* const U = basis_.next();
   basis_.copy(Z_.data(), U);
   solve(U);
-  if (j > 0) basis_.subtract(basis_.block(j - 1), last_factor_.transpose(), U);
-  Square diagonal = basis_.gram(Z_.data(), U);
-  basis_.subtract(basis_.block(j), diagonal, U);
+  Square diagonal = basis_.subtract_last_but_one(last_factor_.transpose(), Z_.data(), U);
 
   const bool is_skipped =
       j >= 4 && j % kPeriod == kPeriod - 1 && locked_.blocks() == 0 && !full_passes_only_;
-  const int first = is_skipped ? j - 1 : 0;
+  int first = is_skipped ? j - 1 : 0;
+  Square H = basis_.subtract_last(diagonal, U, first);
+  diagonal += H.bottomRows(P);
+  largest_ = std::max(largest_, diagonal.cwiseAbs().maxCoeff());
   Square coupling = Square::Identity(P, P);
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(P, kNothing * largest_);
   for (int pass = 0; pass < kPasses; ++pass) {
-    mass_.multiply(U, P, Z_.data());
-    if (locked_.blocks() > 0) locked_.subtract(locked_.products(Z_.data()), U);
-    const Square H = basis_.products(Z_.data(), first);
-    basis_.subtract(H, U, first);
-    if (pass == 0) diagonal += H.bottomRows(P);
-    mass_.multiply(U, P, Z_.data());
-    const BlockFactor factor = basis_.orthonormalise(U, Z_.data());
+    if (pass > 0) H = basis_.products(U, first);
+    Square gram = basis_.subtract(H, U, first);
+    if (locked_.blocks() > 0) gram = locked_.subtract(locked_.products(U, 0), U, 0);
+    const BlockFactor factor = basis_.orthonormalize(gram, least, U, Z_.data());
     coupling = factor.R * coupling;
+    std::vector<int> nothing;
+    for (int c = 0; c < P; ++c) {
+      if (factor.R(c, c) == 0.0) nothing.push_back(c);
+      // Beside what the columns are now; those that are random have no coupling.
+      least[c] = coupling(c, c) > 0.0 ? kNothing * largest_ / coupling(c, c) : 0.0;
+    }
+    if (!nothing.empty()) {
+      write_random_columns(nothing, U);
+      first = 0;
+      continue;
+    }
     const double removed = H.cwiseAbs().maxCoeff();
     const double left = factor.R.diagonal().maxCoeff();
     if (pass == 0 && first == 0 && j >= 4) drift_ = std::max(drift_, removed / left);
@@ -98,11 +120,6 @@ void BlockLanczos::step() {
   }
   if (drift_ > kMostDrift) full_passes_only_ = true;
   projected_.append(last_factor_, Square(0.5 * (diagonal + diagonal.transpose())));
-  largest_ = std::max(largest_, diagonal.cwiseAbs().maxCoeff());
-  if (coupling.diagonal().maxCoeff() <= kNothing * largest_) {
-    is_exhausted_ = true;
-    coupling.setZero();
-  }
   last_factor_ = coupling;
   basis_.append_next();
 }
@@ -166,7 +183,7 @@ BandPairs BlockLanczos::search(double shift, const BandGoal& goal, int next_test
   // The last dimensions beside what is locked are not independent to rounding.
   const int room = (mass_.size() / options_.width - locked_.blocks()) * 3 / 4;
   const int most = std::min(options_.most_blocks + 1, room);
-  const auto is_at_end = [&] { return is_exhausted_ || basis_.blocks() >= most; };
+  const auto is_at_end = [&] { return basis_.blocks() >= most; };
   for (BandPairs found;;) {
     if (!is_at_end()) step();
     const int steps = basis_.blocks() - 1;

@@ -14,11 +14,11 @@ namespace timbre::detail {
 
 struct LanczosOptions {
   int width = 8;  ///< vectors in a block, 8 or 16: more is faster to solve, but a larger basis
-  double tolerance = 1e-9;            ///< of a pair, beside |lambda| + scale
-  int most_blocks = 64;               ///< of the basis
-  int threads = 1;                    ///< 0: all cores
-  std::function<void(int)> on_solve;  ///< after so many solves; may throw
-  PhaseClock* clock = nullptr;        ///< must outlive the method
+  double tolerance = 1e-9;                 ///< of a pair, beside |lambda| + scale
+  int most_blocks = 64;                    ///< of the basis
+  int threads = 1;                         ///< 0: all cores
+  std::function<void(int)> on_solve = {};  ///< after so many solves; may throw
+  PhaseClock* clock = nullptr;             ///< must outlive the method
 };
 
 /// What one run leaves to the next.
@@ -72,7 +72,9 @@ class BlockLanczos {
 
  private:
   [[nodiscard]] BandPairs search(double shift, const BandGoal& goal, int next_test, int& tests);
+  void write_random(double* U);
   void start();
+  void write_random_columns(const std::vector<int>& columns, double* U);
   void step();
   void solve(double* X);
   [[nodiscard]] bool try_goal(double shift, const BandGoal& goal, BandPairs& found, int& missing);
@@ -90,10 +92,7 @@ class BlockLanczos {
   Square last_factor_;  // R of the last block
   BandedEigenpairs small_;
   std::vector<int> chosen_;  // of small_, in the order of the pairs
-  // The inverse leads nowhere out of the basis: as with copies of a few eigenvalues, of which it
-  // then holds as many as a block is wide.
-  bool is_exhausted_ = false;
-  double largest_ = 0.0;  // entry of a diagonal block
+  double largest_ = 0.0;     // entry of a diagonal block
   bool full_passes_only_ = false;
   double drift_ = 0.0;  // the largest loss of orthogonality that a full pass has met in this run
   LanczosMemory memory_;

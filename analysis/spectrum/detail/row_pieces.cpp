@@ -18,7 +18,7 @@ int piece_begin(int size, int piece) {
 
 }  // namespace
 
-int row_pieces(int size) { return size < kPieces * 8 * kRowChunk ? 1 : kPieces; }
+int row_pieces(int size) { return size < kPieces * 16 * kRowChunk ? 1 : kPieces; }
 
 void for_each_piece(int size, int threads, const std::function<void(int, int, int)>& visit) {
   parallel_for(row_pieces(size), threads, [&](std::int64_t i) {

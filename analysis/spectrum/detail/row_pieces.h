@@ -4,7 +4,7 @@
 
 namespace timbre::detail {
 
-inline constexpr int kRowChunk = 128;  ///< pieces are whole chunks, but for the last
+inline constexpr int kRowChunk = 64;  ///< pieces are whole chunks, but for the last
 
 /// How many pieces rows are worked on in: the same for any number of threads. Few rows are one.
 [[nodiscard]] int row_pieces(int size);

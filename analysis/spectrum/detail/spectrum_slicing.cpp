@@ -28,20 +28,21 @@ constexpr Index kLarge = 400000;    // unknowns, and above: the basis must be sm
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
 }
 
-// Wider blocks solve faster, but need a larger basis.
-int block_width(const SlicingOptions& options, Index n) {
-  if (options.width != 0) return options.width;
-  return options.count <= 150 || n >= kLarge ? 8 : 16;
+// Pairs of different bands are orthogonal to their errors over their distance, and the more are
+// wanted, the closer they lie beside the largest, by which errors are measured.
+double pair_tolerance(const SlicingOptions& options) {
+  constexpr double kFew = 300.0;
+  return options.tolerance * std::min(1.0, kFew / static_cast<double>(options.count));
 }
 
-// Larger bands are a little faster.
+// Large bands need a large basis, small ones more factorisations: measured on ellipsoids.
 int half_band(const SlicingOptions& options, Index n) {
   if (options.half != 0) return options.half;
-  return n >= kLarge ? 25 : 50;
+  return n >= kLarge ? 25 : 40;
 }
 
 int most_blocks(const SlicingOptions& options, Index n) {
-  const auto width = block_width(options, n);
+  const int width = options.width;
   const int usual = 6 * (2 * half_band(options, n) + 8) / width + 8;
   return std::clamp(usual, 16, std::max(2, static_cast<int>(n) / width - 1));
 }
@@ -62,8 +63,8 @@ SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
       options_(options),
       usual_half_(half_band(options, K.rows())),
       factor_(ordered(K, M, positions, options)),
-      lanczos_(*factor_, {.width = block_width(options, K.rows()),
-                          .tolerance = options.tolerance,
+      lanczos_(*factor_, {.width = options.width,
+                          .tolerance = pair_tolerance(options),
                           .most_blocks = most_blocks(options, K.rows()),
                           .threads = options.threads,
                           .on_solve = options.on_solve,

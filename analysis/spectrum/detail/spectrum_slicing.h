@@ -19,7 +19,7 @@ struct SlicingOptions {
   Eigen::Index count = 100;  ///< pairs wanted, from the lowest; `want` can raise it
   double tolerance = 1e-9;   ///< of a pair, beside |lambda| + the largest wanted
   int half = 0;              ///< pairs on each side of a shift, about; 0: chosen by size
-  int width = 0;             ///< of blocks, 8 or 16; 0: chosen by count and size
+  int width = 8;             ///< of blocks, 8 or 16: wider ones solve faster, with a larger basis
   bool certify = true;       ///< count at the end of the list, too
   /// The kernel of K is the constants: the first pair becomes exactly that.
   bool has_constants = false;

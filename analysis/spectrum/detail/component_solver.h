@@ -37,7 +37,7 @@ struct ComponentSolveOptions {
   FactorizationBackend backend = FactorizationBackend::automatic;
   bool keep_all = false;              ///< as SlicingOptions has it
   int threads = 1;                    ///< 0: all cores. Results do not depend on it
-  std::function<void(int)> on_solve;  ///< after so many solves with a factor; may throw
+  std::function<void(int)> on_solve;  ///< after so many solves with a factor, 0 while it is made; may throw
   PhaseClock* clock = nullptr;        ///< must outlive the solver
 };
 

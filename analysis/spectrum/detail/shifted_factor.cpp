@@ -1,5 +1,7 @@
 #include "timbre/analysis/spectrum/detail/shifted_factor.h"
 
+#include <utility>
+
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/spectrum/detail/simplicial_factor.h"
 #include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
@@ -9,11 +11,13 @@ namespace timbre::detail {
 std::unique_ptr<ShiftedFactor> make_shifted_factor(const Eigen::SparseMatrix<double>& K,
                                                    const Eigen::SparseMatrix<double>& M,
                                                    const Points* positions,
-                                                   FactorizationBackend backend, int threads) {
+                                                   FactorizationBackend backend, int threads,
+                                                   std::function<void()> between) {
   switch (backend) {
     case FactorizationBackend::automatic:
     case FactorizationBackend::supernodal:
-      return std::make_unique<SupernodalLdlt>(K, M, positions, LdltOptions{.threads = threads});
+      return std::make_unique<SupernodalLdlt>(
+          K, M, positions, LdltOptions{.threads = threads, .between = std::move(between)});
     case FactorizationBackend::eigen:
       return make_simplicial_factor(K, M, make_eigen_ldlt());
     case FactorizationBackend::cholmod:

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -66,9 +67,12 @@ class ShiftedFactor {
 /// @param positions  n x 3 for an ordering that is found fast, or nullptr for one with less fill;
 ///                   other backends than `supernodal` have their own
 /// @param threads    of `supernodal`; 0: all cores. Results do not depend on it
+/// @param between    called now and then while `supernodal` factorises; what it throws leaves
+///                   nothing factorised
 /// @throws Error  bad_request for a backend that this build lacks
 [[nodiscard]] std::unique_ptr<ShiftedFactor> make_shifted_factor(
     const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& M,
-    const Points* positions, FactorizationBackend backend, int threads = 1);
+    const Points* positions, FactorizationBackend backend, int threads = 1,
+    std::function<void()> between = {});
 
 }  // namespace timbre::detail

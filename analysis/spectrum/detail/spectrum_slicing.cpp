@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -51,7 +52,9 @@ std::unique_ptr<ShiftedFactor> ordered(const Eigen::SparseMatrix<double>& K,
                                        const Eigen::SparseMatrix<double>& M,
                                        const Points* positions, const SlicingOptions& options) {
   const PhaseClock::Scope phase(options.clock, &SpectrumPhases::ordering);
-  return make_shifted_factor(K, M, positions, options.backend, options.threads);
+  std::function<void()> between;
+  if (options.on_solve) between = [on_solve = options.on_solve] { on_solve(0); };
+  return make_shifted_factor(K, M, positions, options.backend, options.threads, between);
 }
 
 }  // namespace

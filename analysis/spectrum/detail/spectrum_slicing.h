@@ -26,10 +26,11 @@ struct SlicingOptions {
   FactorizationBackend backend = FactorizationBackend::automatic;
   /// Take the memory for all vectors at the beginning: where none will be forgotten.
   bool keep_all = false;
-  std::uint64_t seed = 1;                  ///< of start vectors
-  int threads = 1;                         ///< 0: all cores. Results do not depend on it
-  std::function<void(int)> on_solve = {};  ///< after so many solves with a factor; may throw
-  PhaseClock* clock = nullptr;             ///< must outlive the slicer
+  std::uint64_t seed = 1;  ///< of start vectors
+  int threads = 1;         ///< 0: all cores. Results do not depend on it
+  std::function<void(int)> on_solve =
+      {};  ///< after so many solves with a factor, 0 while it is made; may throw
+  PhaseClock* clock = nullptr;  ///< must outlive the slicer
 };
 
 /// One shift and what was found around it.

@@ -1,11 +1,13 @@
 #include "timbre/analysis/spectrum/detail/supernodal_ldlt.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "timbre/analysis/core/error.h"
@@ -127,9 +129,13 @@ struct SupernodalLdlt::Impl {
     return (q == -1 ? arenas.back() : arenas[q]).data() + plan.place[s];
   }
 
-  void run(const FactorInput& input, const Sequence& sequence, FrontFactorizer& fronts) {
+  // Stops where `stop` says so, or throws.
+  template <typename Stop>
+  void run(const FactorInput& input, const Sequence& sequence, FrontFactorizer& fronts,
+           const Stop& stop) {
     std::vector<Child> children;
     for (const int s : sequence.supernodes) {
+      if (stop()) return;
       children.clear();
       for (const int c : plan.children_of(s)) children.push_back({c, update_of(c)});
       fronts.factorize(input, s, children, update_of(s),
@@ -139,14 +145,28 @@ struct SupernodalLdlt::Impl {
 
   PivotCounts factorize(double shift) {
     allocate();
+    factorized = false;
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<bool> is_stopped = false;
+    const auto stop = [&] {
+      if (is_stopped) return true;
+      if (!options.between || std::this_thread::get_id() != caller) return false;
+      try {
+        options.between();
+      } catch (...) {
+        is_stopped = true;
+        throw;
+      }
+      return false;
+    };
     const std::vector<double> scale = row_scales(pencil, shift);
     const FactorInput input{symbolic, layout, pencil, entry_row, scale, kernels, shift};
     parallel_for(std::ssize(plan.subtrees), threads, [&](std::int64_t i) {
       const auto fronts = workspaces.borrow(symbolic);
-      run(input, plan.subtrees[i], *fronts);
+      run(input, plan.subtrees[i], *fronts, stop);
     });
     const auto fronts = workspaces.borrow(symbolic);
-    run(input, plan.top, *fronts);
+    run(input, plan.top, *fronts, stop);
     PivotCounts all;
     for (const PivotCounts& one : counts) all.add(one);
     factorized = true;

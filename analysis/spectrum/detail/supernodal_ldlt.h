@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct LdltOptions {
   /// About the time of 16 solves; without it `near_singular` only knows the pivots.
   bool check = true;
   InstructionSet instructions = best_instruction_set();
+  /// Called now and then while factorising, on the thread that asked for it; may throw.
+  std::function<void()> between = {};
 };
 
 /// L D L^T of K - s M for one pattern and any shifts: sparse, symmetric, definite or not.

@@ -393,5 +393,27 @@ TEST(SupernodalLdlt, RefusesWhatCannotBeSolvedAndSaysSo) {
             "pencil: matrices of 10 x 10 and 9 x 9; both must be square and of the same size");
 }
 
+TEST(SupernodalLdlt, StopsWhereItIsToldAndStartsAgain) {
+  const Operator op = compute_operator(make_ellipsoid(1.0, 1.3, 1.9, 16));
+  constexpr double kShift = 30.0;
+  const auto negative = SupernodalLdlt(op.stiffness, op.mass, nullptr).factorize(kShift).negative;
+  for (const int threads : {1, 3}) {
+    bool is_told = true;
+    int calls = 0;
+    const auto between = [&] {
+      ++calls;
+      if (is_told) throw std::string("stop");
+    };
+    SupernodalLdlt ldlt(op.stiffness, op.mass, nullptr, {.threads = threads, .between = between});
+    EXPECT_THROW((void)ldlt.factorize(kShift), std::string);
+    EXPECT_EQ(calls, 1);
+    MatrixXd X = MatrixXd::Ones(op.mass.rows(), 1);
+    EXPECT_EQ(refused_request([&] { ldlt.solve(X); }), "solve: nothing is factorised yet");
+    is_told = false;
+    EXPECT_EQ(ldlt.factorize(kShift).negative, negative);
+    EXPECT_GT(calls, 2);
+  }
+}
+
 }  // namespace
 }  // namespace timbre::detail

@@ -38,8 +38,10 @@ double pair_tolerance(const SlicingOptions& options) {
 
 // Large bands need a large basis, small ones more factorisations: measured on ellipsoids.
 int half_band(const SlicingOptions& options, Index n) {
+  constexpr Index kSmall = 20000;
   if (options.half != 0) return options.half;
-  return n >= kLarge ? 25 : 40;
+  if (n < kSmall) return 32;
+  return n < kLarge ? 40 : 25;
 }
 
 int most_blocks(const SlicingOptions& options, Index n) {

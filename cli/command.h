@@ -78,6 +78,7 @@ void catch_interrupts();
 [[nodiscard]] bool interrupted();
 
 // One function per command, in commands/: adds the subcommand and its callback.
+void add_align(CLI::App& timbre, Context& context);
 void add_dataset(CLI::App& timbre, Context& context);
 void add_db(CLI::App& timbre, Context& context);
 void add_distance(CLI::App& timbre, Context& context);

@@ -48,6 +48,7 @@ void add_commands(CLI::App& app, timbre::cli::Context& context) {
   add_query(app, context);
   add_match(app, context);
   add_symmetry(app, context);
+  add_align(app, context);
   add_eval(app, context);
   add_dataset(app, context);
   add_render(app, context);

@@ -1,6 +1,9 @@
 #include "timbre/index/store.h"
 
 #include <algorithm>
+#include <fstream>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "timbre/index/detail/store_impl.h"
@@ -44,6 +47,13 @@ Store Store::create(const std::string& location, const StoreParameters& paramete
   }
   detail::create_database(location, parameters);
   return open(location, StoreAccess::write);
+}
+
+bool is_store(const std::string& location) {
+  constexpr std::string_view kMagic = "SQLite format 3";
+  std::ifstream file(location, std::ios::binary);
+  std::string start(kMagic.size(), '\0');
+  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic;
 }
 
 Store Store::open(const std::string& location, StoreAccess access) {

@@ -63,6 +63,9 @@ struct ShapeRecord {
 ///                characters; `what` is its place in the message
 void require_storable_text(const std::string& text, const char* what);
 
+/// Whether a file begins as a database does, and no mesh file.
+[[nodiscard]] bool is_store(const std::string& location);
+
 enum class AddOutcome : std::uint8_t {
   added,
   kept,      ///< the same name and content are there already

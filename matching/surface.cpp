@@ -177,6 +177,7 @@ MatchSurface prepared(const TriangleMesh& mesh, const Operator& op, Spectrum spe
   OrientedFaces oriented = orient_outward(mesh);
   s.faces = std::move(oriented.faces);
   s.orientation = oriented.orientation;
+  s.area = op.area;
   spectrum = at_unit_area(std::move(spectrum), op.area);
   s.values = std::move(spectrum.values);
   s.vectors = std::move(spectrum.vectors);

@@ -23,6 +23,7 @@ struct MatchSurface {
   std::vector<std::int32_t> vertex;  ///< n, file index of each row, ascending
   Eigen::Index file_vertices = 0;
   double component_share = 1.0;  ///< area of this component in the whole mesh
+  double area = 1.0;             ///< of this component at the scale of the file
 
   Points points;         ///< n x 3, centred
   Faces faces;           ///< rows of `points`

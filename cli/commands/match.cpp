@@ -6,6 +6,7 @@
 #include "timbre/analysis/core/array_file.h"
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/cli/commands/map_input.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
 
@@ -113,20 +114,6 @@ std::string map_bytes(const MatchResult& result, const std::string& format) {
     arrays.push_back({"C_ba", to_npy(result.solutions[0].functional.ba)});
   }
   return to_npz(arrays);
-}
-
-MatchSurface load_surface(const Context& context, const std::string& path, int count) {
-  const MeshFile file = load_mesh(context, path);
-  MatchSurface surface = for_file(path, [&] {
-    return prepare_surface(
-        file.mesh,
-        {.eigenpairs = count, .threads = context.threads, .progress = context.progress()});
-  });
-  if (surface.component_share < 0.999) {
-    context.note(path + ": only the largest component, " +
-                 to_text(100.0 * surface.component_share, 1) + " % of the area, is matched");
-  }
-  return surface;
 }
 
 void run(const Arguments& args, Context& context) {

@@ -1,6 +1,6 @@
 #include "timbre/cli/array_output.h"
 
-#include "timbre/analysis/core/array_file.h"
+#include "timbre/analysis/core/mat_file.h"
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/cli/options.h"
 
@@ -34,6 +34,10 @@ nlohmann::json to_json_rows(const Eigen::MatrixXd& values) {
   return rows;
 }
 
+std::string to_archive(const std::string& path, const std::vector<NamedArray>& arrays) {
+  return array_format(path) == "mat" ? to_mat(arrays) : to_npz(arrays);
+}
+
 std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix>& matrices) {
   const std::string format = array_format(path);
   if (format == "npy") return npy_of(matrices.front().values);
@@ -43,7 +47,7 @@ std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix
   for (const NamedMatrix& matrix : matrices) {
     arrays.push_back({matrix.name, npy_of(matrix.values)});
   }
-  return to_npz(arrays);
+  return to_archive(path, arrays);
 }
 
 }  // namespace timbre::cli

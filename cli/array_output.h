@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "timbre/analysis/core/array_file.h"
+
 namespace timbre::cli {
 
 struct NamedMatrix {
@@ -12,8 +14,12 @@ struct NamedMatrix {
   Eigen::MatrixXd values;
 };
 
+/// Several arrays in one file: `.mat` if its path ends so, else `.npz`.
+[[nodiscard]] std::string to_archive(const std::string& path,
+                                     const std::vector<NamedArray>& arrays);
+
 /// The bytes of a result file by the ending of its path: `.npy` holds the first matrix,
-/// `.npz` all, `.txt` and `-` a row of the first matrix per line.
+/// `.npz` and `.mat` all, `.txt` and `-` a row of the first matrix per line.
 /// @throws Error  bad_request for another ending
 [[nodiscard]] std::string to_file_bytes(const std::string& path,
                                         const std::vector<NamedMatrix>& matrices);

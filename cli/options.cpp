@@ -47,9 +47,11 @@ CLI::Validator number_between(double low, double high) {
 std::string array_format(const std::string& path) {
   if (path == "-") return "txt";
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".npz" || ending == ".npy" || ending == ".txt") return ending.substr(1);
+  for (const char* known : {".npz", ".npy", ".mat", ".txt"}) {
+    if (ending == known) return ending.substr(1);
+  }
   throw Error(ErrorKind::bad_request, path, "output",
-              "ending '" + ending + "' is unknown; .npz, .npy and .txt are written");
+              "ending '" + ending + "' is unknown; .npz, .npy, .mat and .txt are written");
 }
 
 }  // namespace timbre::cli

@@ -55,7 +55,7 @@ void add_up_option(CLI::App& command, UpAxis& up);
 /// A number in [low, high], which messages show as people write them.
 [[nodiscard]] CLI::Validator number_between(double low, double high);
 
-/// What the ending of an output name asks for: "npz", "npy" or "txt".
+/// What the ending of an output name asks for: "npz", "npy", "mat" or "txt".
 /// @throws Error  bad_request for another ending; "-" is text
 [[nodiscard]] std::string array_format(const std::string& path);
 

@@ -42,12 +42,6 @@ std::size_t bytes_of(const Array& array) {
   return static_cast<std::size_t>(array.size()) * sizeof(typename Array::Scalar);
 }
 
-struct NpyHeader {
-  std::string type;
-  bool fortran = false;
-  std::vector<std::int64_t> shape;
-};
-
 Error npy_error(const std::string& place, const std::string& cause) {
   return {ErrorKind::bad_input, "", place, cause};
 }
@@ -57,8 +51,8 @@ class NpyHeaderReader {
  public:
   explicit NpyHeaderReader(std::string_view text) : rest_(text) {}
 
-  NpyHeader read() {
-    NpyHeader header;
+  NpyView read() {
+    NpyView header;
     unsigned seen = 0;
     expect('{');
     while (!accept('}')) {
@@ -67,7 +61,7 @@ class NpyHeaderReader {
       if (key == "descr") {
         header.type = quoted();
       } else if (key == "fortran_order") {
-        header.fortran = truth();
+        header.is_fortran = truth();
       } else if (key == "shape") {
         header.shape = shape();
       } else {
@@ -139,27 +133,6 @@ class NpyHeaderReader {
   std::string_view rest_;
 };
 
-// Takes the header off the front.
-NpyHeader take_npy_header(std::string_view& bytes) {
-  if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
-    throw npy_error("", "is not a NumPy array");
-  }
-  const int version = static_cast<unsigned char>(bytes[6]);
-  if (version != 1 && version != 2) {
-    throw npy_error("header", "has format " + std::to_string(version) + "; 1 and 2 are read");
-  }
-  const std::size_t length_bytes = version == 1 ? 2 : 4;
-  std::size_t length = 0;
-  bytes.remove_prefix(8);
-  if (bytes.size() >= length_bytes) std::memcpy(&length, bytes.data(), length_bytes);
-  if (bytes.size() < length_bytes || bytes.size() - length_bytes < length) {
-    throw npy_error("header", "ends too soon");
-  }
-  NpyHeader header = NpyHeaderReader(bytes.substr(length_bytes, length)).read();
-  bytes.remove_prefix(length_bytes + length);
-  return header;
-}
-
 double to_double(std::int64_t value) {
   constexpr std::int64_t kLargest = std::int64_t{1} << 53;
   if (value < -kLargest || value > kLargest) {
@@ -169,7 +142,8 @@ double to_double(std::int64_t value) {
 }
 
 template <typename Scalar>
-Eigen::MatrixXd npy_matrix(std::string_view data, const NpyHeader& header) {
+Eigen::MatrixXd npy_matrix(const NpyView& header) {
+  const std::string_view data = header.data;
   const std::int64_t rows = header.shape[0];
   const std::int64_t cols = header.shape.size() == 2 ? header.shape[1] : 1;
   const auto count = static_cast<std::int64_t>(data.size() / sizeof(Scalar));
@@ -184,7 +158,7 @@ Eigen::MatrixXd npy_matrix(std::string_view data, const NpyHeader& header) {
   for (std::int64_t i = 0; i < rows; ++i) {
     for (std::int64_t j = 0; j < cols; ++j) {
       Scalar value{};
-      const std::int64_t at = header.fortran ? j * rows + i : i * cols + j;
+      const std::int64_t at = header.is_fortran ? j * rows + i : i * cols + j;
       std::memcpy(&value, data.data() + static_cast<std::size_t>(at) * sizeof(Scalar),
                   sizeof(Scalar));
       if constexpr (std::is_same_v<Scalar, std::int64_t>) {
@@ -300,16 +274,36 @@ std::string to_npy(const std::string& ascii) {
              wide.size() * sizeof(char32_t));
 }
 
+NpyView view_npy(std::string_view bytes) {
+  if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
+    throw npy_error("", "is not a NumPy array");
+  }
+  const int version = static_cast<unsigned char>(bytes[6]);
+  if (version != 1 && version != 2) {
+    throw npy_error("header", "has format " + std::to_string(version) + "; 1 and 2 are read");
+  }
+  const std::size_t length_bytes = version == 1 ? 2 : 4;
+  std::size_t length = 0;
+  bytes.remove_prefix(8);
+  if (bytes.size() >= length_bytes) std::memcpy(&length, bytes.data(), length_bytes);
+  if (bytes.size() < length_bytes || bytes.size() - length_bytes < length) {
+    throw npy_error("header", "ends too soon");
+  }
+  NpyView view = NpyHeaderReader(bytes.substr(length_bytes, length)).read();
+  view.data = bytes.substr(length_bytes + length);
+  return view;
+}
+
 Eigen::MatrixXd from_npy(std::string_view bytes) {
-  const NpyHeader header = take_npy_header(bytes);
+  const NpyView header = view_npy(bytes);
   if (header.shape.size() != 1 && header.shape.size() != 2) {
     throw npy_error("header", "gives the array " + std::to_string(header.shape.size()) +
                                   " dimensions; 1 and 2 are read");
   }
-  if (header.type == "<f8") return npy_matrix<double>(bytes, header);
-  if (header.type == "<f4") return npy_matrix<float>(bytes, header);
-  if (header.type == "<i8") return npy_matrix<std::int64_t>(bytes, header);
-  if (header.type == "<i4") return npy_matrix<std::int32_t>(bytes, header);
+  if (header.type == "<f8") return npy_matrix<double>(header);
+  if (header.type == "<f4") return npy_matrix<float>(header);
+  if (header.type == "<i8") return npy_matrix<std::int64_t>(header);
+  if (header.type == "<i4") return npy_matrix<std::int32_t>(header);
   throw npy_error("header", "gives the type '" + header.type.substr(0, 40) +
                                 "'; <f8, <f4, <i8 and <i4 are read");
 }

@@ -27,6 +27,17 @@ namespace timbre {
 ///                than the header says, and for an int64 that no double holds
 [[nodiscard]] Eigen::MatrixXd from_npy(std::string_view bytes);
 
+/// What the bytes of a NumPy array say of themselves, and its numbers as they lie.
+struct NpyView {
+  std::string type;  ///< "<f8": little-endian float64
+  bool is_fortran = false;
+  std::vector<std::int64_t> shape;
+  std::string_view data;  ///< in the bytes given
+};
+
+/// @throws Error  bad_input, with place and cause, unless `bytes` begin as format 1.0 or 2.0
+[[nodiscard]] NpyView view_npy(std::string_view bytes);
+
 enum class ElementType : std::uint8_t { float64, float32 };
 
 /// What stands before the numbers of a matrix that follow column by column.

@@ -47,7 +47,7 @@ void add_db_export(CLI::App& db, Context& context) {
   command.add_option("DB", args->database, "the database")->required();
   command.add_option("NAME", args->name, "the shape")->required();
   command.add_flag("--spectrum", args->spectrum,
-                   "the eigenvalues, at the mesh's own scale, as .npy, .npz or text");
+                   "the eigenvalues, at the mesh's own scale, as .npy, .npz, .mat or text");
   add_common_options(command, context, true);
   command.footer(
       "The mesh comes out bit for bit as it went in, as .off, .obj, .ply, .vtk or .asc. These\n"

@@ -140,11 +140,13 @@ Summary stream_npy(const Arguments& args, const Context& context, const Triangle
   return summary;
 }
 
-void require_fits_npz(Index rows, Index columns) {
+void require_fits(const std::string& archive, Index rows, Index columns) {
+  constexpr double kGigabyte = 1073741824.0;
+  const double most = archive == "mat" ? 2.0 : 4.0;
   const double bytes = 8.0 * static_cast<double>(rows) * static_cast<double>(columns);
-  if (bytes < 4294967296.0) return;
-  throw Error(ErrorKind::bad_request, "", "npz",
-              "holds at most 4 GiB; write the distances to a .npy file");
+  if (bytes < most * kGigabyte) return;
+  throw Error(ErrorKind::bad_request, "", archive,
+              "holds at most " + to_text(most) + " GiB; write the distances to a .npy file");
 }
 
 void run(const Arguments& args, const Context& context) {
@@ -166,7 +168,7 @@ void run(const Arguments& args, const Context& context) {
     require_vertices(sources, n, from_file ? ErrorKind::bad_input : ErrorKind::bad_request);
     return 0;
   });
-  if (format == "npz") require_fits_npz(n, std::ssize(sources.sets));
+  if (format == "npz" || format == "mat") require_fits(format, n, std::ssize(sources.sets));
 
   DistanceOptions options = args.distance;
   options.threads = context.threads;
@@ -228,7 +230,8 @@ void add_distance(CLI::App& timbre, Context& context) {
   add_common_options(command, context, true);
   command.footer(
       "Distances to the nearest vertex of each source, n x sources; inf where there is no way.\n"
-      "-o F.npy is written as it is found and may be larger than memory; F.npz and F.txt not.\n"
+      "-o F.npy is written as it is found and may be larger than memory; F.npz, F.mat and F.txt\n"
+      "not.\n"
       "Example:\n  timbre distance horse.ply --vertices 0,17 -o horse_distances.npy");
   command.callback([args, &context] { run(*args, context); });
 }

@@ -99,7 +99,7 @@ void add_filter(CLI::App& timbre, Context& context) {
   add_common_options(command, context, true);
   command.footer(
       "Filtered coordinates go to a mesh file, -o F.ply (.off, .obj, .stl, .vtk, .glb; - is PLY);\n"
-      "all else to F.npy, F.npz or F.txt.\n"
+      "all else to F.npy, F.npz, F.mat or F.txt.\n"
       "Example:\n  timbre filter horse.ply --low-pass 60 -o horse_60.ply");
   command.callback([args, &context] { run(*args, context); });
 }

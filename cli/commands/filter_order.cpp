@@ -6,6 +6,7 @@
 #include "timbre/analysis/filter/fiedler_order.h"
 #include "timbre/analysis/filter/nodal_domains.h"
 #include "timbre/analysis/filter/spectral_gap.h"
+#include "timbre/cli/array_output.h"
 #include "timbre/cli/commands/filter.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
@@ -22,7 +23,7 @@ std::string to_bytes(const std::string& path, const std::string& name,
   const std::string format = array_format(path);
   if (format == "txt") return to_lines(numbers);
   if (format == "npy") return to_npy_bytes(numbers);
-  return to_npz({{name, to_npy_bytes(numbers)}, {beside, to_npy(values)}});
+  return to_archive(path, {{name, to_npy_bytes(numbers)}, {beside, to_npy(values)}});
 }
 
 void require_outputs(const Context& context) {

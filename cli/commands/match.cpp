@@ -6,6 +6,7 @@
 #include "timbre/analysis/core/array_file.h"
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/cli/array_output.h"
 #include "timbre/cli/commands/map_input.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
@@ -104,7 +105,8 @@ nlohmann::json to_json(const Arguments& args, const MatchResult& result) {
             {"dense", result.timings.dense}}}};
 }
 
-std::string map_bytes(const MatchResult& result, const std::string& format) {
+std::string map_bytes(const MatchResult& result, const std::string& output) {
+  const std::string format = array_format(output);
   if (format == "npy") return to_npy_bytes(result.ab);
   if (format == "txt") return to_lines(result.ab);
   std::vector<NamedArray> arrays = {{"p2p_ab", to_npy_bytes(result.ab)},
@@ -113,17 +115,18 @@ std::string map_bytes(const MatchResult& result, const std::string& format) {
     arrays.push_back({"C_ab", to_npy(result.solutions[0].functional.ab)});
     arrays.push_back({"C_ba", to_npy(result.solutions[0].functional.ba)});
   }
-  return to_npz(arrays);
+  return to_archive(output, arrays);
 }
 
 void run(const Arguments& args, Context& context) {
-  const std::string format = context.output.empty() ? "" : array_format(context.output);
+  if (!context.output.empty()) (void)array_format(context.output);
   context.require_output();
   const MatchSurface A = load_surface(context, args.source, args.count);
   const MatchSurface B = load_surface(context, args.target, args.count);
   const MatchResult result =
       match(A, B, {.threads = context.threads, .progress = context.progress()});
-  if (!format.empty()) context.write_result(context.output, map_bytes(result, format));
+  if (!context.output.empty())
+    context.write_result(context.output, map_bytes(result, context.output));
   if (args.strict && result.verdict != Verdict::clear) context.exit_code = 3;
   context.answer(to_json(args, result), to_prose(args, result, context.output));
 }
@@ -144,7 +147,8 @@ void add_match(CLI::App& timbre, Context& context) {
   add_common_options(command, context, true);
   command.footer(
       "MAP.txt and MAP.npy hold, for each vertex of SOURCE, the 0-based vertex of TARGET, -1 for\n"
-      "none; MAP.npz both directions (p2p_ab, p2p_ba) and the functional maps (C_ab, C_ba).\n"
+      "none; MAP.npz and MAP.mat both directions (p2p_ab, p2p_ba) and the functional maps (C_ab,\n"
+      "C_ba).\n"
       "Example:\n  timbre match standing.ply running.ply -o map.npz");
   command.callback([args, &context] { run(*args, context); });
 }

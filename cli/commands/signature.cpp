@@ -162,7 +162,8 @@ void add_signature(CLI::App& timbre, Context& context) {
                   "which descriptor");
   add_shared_options(command, *args, context);
   command.footer(
-      "-o F.npy, F.npz (with times or energies) or F.txt. dna are the eigenvalues at unit total\n"
+      "-o F.npy, F.npz or F.mat (with times or energies) or F.txt. dna are the eigenvalues at unit "
+      "total\n"
       "area, dna_raw at the mesh's own scale; all others are at unit total area. gps takes the\n"
       "first 25 eigenfunctions at most.\n"
       "Example:\n  timbre signature horse.ply --kind wks -k 200 -o horse_wks.npz");
@@ -186,7 +187,7 @@ void add_embed(CLI::App& timbre, Context& context) {
       ->check(number_between(1e-300, 1e300));
   add_shared_options(command, *args, context);
   command.footer(
-      "-o F.npy, F.npz (with eigenvalues) or F.txt: n x k, at unit total area.\n"
+      "-o F.npy, F.npz or F.mat (with eigenvalues) or F.txt: n x k, at unit total area.\n"
       "Example:\n  timbre embed horse.ply --kind biharmonic -k 30 -o horse.npy");
   command.callback([args, &context] { run_embedding(*args, context); });
 }

@@ -12,6 +12,7 @@
 #include "timbre/analysis/core/stopwatch.h"
 #include "timbre/analysis/operators/finite_elements.h"
 #include "timbre/analysis/spectrum/spectrum.h"
+#include "timbre/cli/array_output.h"
 #include "timbre/cli/command.h"
 #include "timbre/cli/commands/stream_spectrum.h"
 #include "timbre/cli/options.h"
@@ -51,7 +52,8 @@ Points nodes_of(const TriangleMesh& mesh, const Operator& op) {
   return node_positions(number_nodes(mesh.faces, op.vertices, degree), mesh.vertices);
 }
 
-std::string npz(const TriangleMesh& mesh, const Operator& op, const Spectrum& found) {
+std::string archive(const TriangleMesh& mesh, const Operator& op, const Spectrum& found,
+                    const std::string& output) {
   std::vector<NamedArray> arrays = {
       {"vertices", to_npy(mesh.vertices)},    {"faces", to_npy(mesh.faces)},
       {"evals", to_npy(found.values)},        {"evecs", to_npy(found.vectors)},
@@ -63,7 +65,7 @@ std::string npz(const TriangleMesh& mesh, const Operator& op, const Spectrum& fo
   const int certified = found.certificate ? 1 : 0;
   arrays.push_back({"certified", to_npy(Eigen::VectorXi(Eigen::VectorXi::Constant(1, certified)))});
   arrays.push_back({"timbre_version", to_npy(version_number())});
-  return to_npz(arrays);
+  return to_archive(output, arrays);
 }
 
 std::string lines(const Eigen::VectorXd& values) {
@@ -90,8 +92,8 @@ void require_outputs(const Arguments& args, const Context& context) {
 void write_spectrum(const Context& context, const TriangleMesh& mesh, const Operator& op,
                     const Spectrum& found) {
   const std::string format = array_format(context.output);
-  if (format == "npz") {
-    context.write_result(context.output, npz(mesh, op, found));
+  if (format == "npz" || format == "mat") {
+    context.write_result(context.output, archive(mesh, op, found, context.output));
   } else {
     context.write_result(context.output, lines(found.values));
   }
@@ -230,7 +232,8 @@ void add_spectrum(CLI::App& timbre, Context& context) {
   add_threads_option(command, context);
   add_common_options(command, context, true);
   command.footer(
-      "Without -o the eigenvalues are printed, one a line. F.npz holds mesh, matrices and\n"
+      "Without -o the eigenvalues are printed, one a line. F.npz or F.mat holds mesh, matrices "
+      "and\n"
       "eigenpairs. F.npy takes the eigenfunctions as they are found, more than fit into memory;\n"
       "F.evals.npy and F.json, with the certificate, come beside it.\n"
       "Examples:\n  timbre spectrum horse.ply -k 200 -o horse.npz\n"

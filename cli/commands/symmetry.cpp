@@ -5,6 +5,7 @@
 #include "timbre/analysis/core/array_file.h"
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
+#include "timbre/cli/array_output.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
 
@@ -44,7 +45,8 @@ nlohmann::json to_json(const Arguments& args, const std::vector<Reflection>& fou
   return {{"mesh", args.mesh}, {"maps", maps}};
 }
 
-std::string map_bytes(const std::vector<Reflection>& found, const std::string& format) {
+std::string map_bytes(const std::vector<Reflection>& found, const std::string& output) {
+  const std::string format = array_format(output);
   if (format == "npy") return to_npy_bytes(found[0].map);
   if (format == "txt") return to_lines(found[0].map);
   std::vector<NamedArray> arrays;
@@ -52,11 +54,11 @@ std::string map_bytes(const std::vector<Reflection>& found, const std::string& f
     arrays.push_back({"map_" + std::to_string(i), to_npy_bytes(found[i].map)});
     arrays.push_back({"C_" + std::to_string(i), to_npy(found[i].C)});
   }
-  return to_npz(arrays);
+  return to_archive(output, arrays);
 }
 
 void run(const Arguments& args, const Context& context) {
-  const std::string format = context.output.empty() ? "" : array_format(context.output);
+  if (!context.output.empty()) (void)array_format(context.output);
   context.require_output();
   const MeshFile file = load_mesh(context, args.mesh);
   const MatchSurface surface = for_file(args.mesh, [&] {
@@ -66,12 +68,12 @@ void run(const Arguments& args, const Context& context) {
   });
   const std::vector<Reflection> found =
       find_reflections(surface, {.threads = context.threads, .progress = context.progress()});
-  if (!format.empty()) {
+  if (!context.output.empty()) {
     if (found.empty()) {
       throw Error(ErrorKind::not_converged, args.mesh, "symmetry",
                   "no reflection found, so there is no map to write");
     }
-    context.write_result(context.output, map_bytes(found, format));
+    context.write_result(context.output, map_bytes(found, context.output));
   }
   context.answer(to_json(args, found), to_prose(args, found, context.output));
 }
@@ -90,7 +92,7 @@ void add_symmetry(CLI::App& timbre, Context& context) {
   add_common_options(command, context, true);
   command.footer(
       "MAP.txt and MAP.npy hold the best reflection: for each vertex the 0-based vertex of its\n"
-      "mirror image; MAP.npz all of them (map_0, C_0, map_1, ...).\n"
+      "mirror image; MAP.npz and MAP.mat all of them (map_0, C_0, map_1, ...).\n"
       "Example:\n  timbre symmetry horse.ply -o mirror.txt");
   command.callback([args, &context] { run(*args, context); });
 }

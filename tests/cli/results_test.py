@@ -7,6 +7,7 @@ import os
 import pathlib
 import signal
 import stat
+import struct
 import subprocess
 import sys
 import time
@@ -59,6 +60,27 @@ class Files(Results):
         self.assertLessEqual({"vertices.npy", "faces.npy", "evals.npy", "evecs.npy", "mass.npy", "W_data.npy"}, names)
         self.assertTrue(header.startswith(b"\x93NUMPY"))
         self.assertIn(b"(112, 20)", header)
+
+    def test_matlab_files_hold_what_npz_files_hold(self):
+        for command in (["spectrum", self.mesh, "-k", "20"], ["signature", self.mesh, "-k", "20"],
+                        ["filter", self.mesh, "--fiedler"]):
+            self.run_timbre(*command, "-o", self.path("a.npz"), "--force")
+            self.run_timbre(*command, "-o", self.path("a.mat"), "--force")
+            with zipfile.ZipFile(self.path("a.npz")) as archive:
+                names = [name[:-4].encode() for name in archive.namelist()]
+                numbers = sum(len(archive.read(name)) - 128 for name in archive.namelist())
+            data = pathlib.Path(self.path("a.mat")).read_bytes()
+            self.assertTrue(data.startswith(b"MATLAB 5.0 MAT-file"))
+            found, at = [], 128
+            while at < len(data):
+                kind, size = struct.unpack_from("<II", data, at)
+                self.assertEqual(kind, 14)
+                length = struct.unpack_from("<I", data, at + 44)[0]
+                found.append(data[at + 48:at + 48 + length])
+                at += 8 + size
+            self.assertEqual(at, len(data))
+            self.assertEqual(found, names)
+            self.assertGreater(len(data), numbers)
 
     def test_existing_results_need_force(self):
         for command in ("spectrum", "signature", "embed"):

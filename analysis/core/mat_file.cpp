@@ -1,0 +1,120 @@
+#include "timbre/analysis/core/mat_file.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+#include "timbre/analysis/core/error.h"
+
+namespace timbre {
+namespace {
+
+// Numbers of the format, as its description has them.
+enum : std::uint32_t { kInt8 = 1, kUint16 = 4, kInt32 = 5, kUint32 = 6, kDouble = 9, kMatrix = 14 };
+enum : std::uint32_t { kCharClass = 4, kDoubleClass = 6, kInt32Class = 12 };
+
+void append(std::string& to, std::uint32_t value) {
+  to.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+// A part with its type and size, filled up to 8 bytes.
+void append_part(std::string& to, std::uint32_t type, std::string_view data) {
+  append(to, type);
+  append(to, static_cast<std::uint32_t>(data.size()));
+  to += data;
+  to.append((8 - data.size() % 8) % 8, '\0');
+}
+
+template <typename Number>
+std::string bytes_of(const std::vector<Number>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
+}
+
+// Column by column, whatever the order in the array.
+std::string by_columns(const NpyView& array, std::size_t size, std::int64_t rows,
+                       std::int64_t cols) {
+  if (array.is_fortran || rows <= 1 || cols <= 1) return std::string(array.data);
+  std::string out(array.data.size(), '\0');
+  for (std::int64_t i = 0; i < rows; ++i) {
+    for (std::int64_t j = 0; j < cols; ++j) {
+      std::memcpy(out.data() + static_cast<std::size_t>(j * rows + i) * size,
+                  array.data.data() + static_cast<std::size_t>(i * cols + j) * size, size);
+    }
+  }
+  return out;
+}
+
+// UTF-32 of ASCII as UTF-16.
+std::string narrowed(std::string_view wide) {
+  std::string out;
+  for (std::size_t i = 0; i + 4 <= wide.size(); i += 4) out += wide.substr(i, 2);
+  return out;
+}
+
+struct Content {
+  std::uint32_t array_class, type;
+  std::int32_t rows, cols;
+  std::string data;
+};
+
+std::int32_t checked(std::int64_t size, const std::string& name) {
+  if (size > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(ErrorKind::bad_request, "", name,
+                "has 2 GiB or more, which .mat files cannot hold; write .npy");
+  }
+  return static_cast<std::int32_t>(size);
+}
+
+Content content_of(const NamedArray& array) {
+  const NpyView view = view_npy(array.bytes);
+  (void)checked(static_cast<std::int64_t>(view.data.size()), array.name);
+  if (view.type.starts_with("<U")) {
+    std::string text = narrowed(view.data);
+    const auto letters = static_cast<std::int32_t>(text.size() / 2);
+    return {kCharClass, kUint16, letters > 0 ? 1 : 0, letters, std::move(text)};
+  }
+  const bool is_real = view.type == "<f8";
+  if ((!is_real && view.type != "<i4") || view.shape.empty() || view.shape.size() > 2) {
+    throw Error(ErrorKind::bad_request, "", array.name, "is of a kind that .mat files do not get");
+  }
+  const std::int32_t rows = checked(view.shape[0], array.name);
+  const std::int32_t cols = view.shape.size() == 2 ? checked(view.shape[1], array.name) : 1;
+  return {is_real ? kDoubleClass : kInt32Class, is_real ? kDouble : kInt32, rows, cols,
+          by_columns(view, is_real ? sizeof(double) : sizeof(std::int32_t), rows, cols)};
+}
+
+void require_name(const std::string& name) {
+  constexpr std::size_t kLongest = 63;
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_valid = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  if (!name.empty() && name.size() <= kLongest && is_letter(name[0]) &&
+      std::all_of(name.begin(), name.end(), is_valid)) {
+    return;
+  }
+  throw Error(ErrorKind::bad_request, "", name, "cannot be the name of a variable in a .mat file");
+}
+
+}  // namespace
+
+std::string to_mat(const std::vector<NamedArray>& arrays) {
+  constexpr std::size_t kText = 116;
+  std::string out = "MATLAB 5.0 MAT-file, written by timbre";
+  out.resize(kText, ' ');
+  out.append(8, '\0');                       // no data of subsystems
+  out += std::string_view("\x00\x01IM", 4);  // version 1.0, little-endian
+  for (const NamedArray& array : arrays) {
+    require_name(array.name);
+    const Content content = content_of(array);
+    std::string matrix;
+    append_part(matrix, kUint32, bytes_of(std::vector<std::uint32_t>{content.array_class, 0}));
+    append_part(matrix, kInt32, bytes_of(std::vector<std::int32_t>{content.rows, content.cols}));
+    append_part(matrix, kInt8, array.name);
+    append_part(matrix, content.type, content.data);
+    append_part(out, kMatrix, matrix);
+  }
+  return out;
+}
+
+}  // namespace timbre

@@ -52,8 +52,8 @@ QueryAnswer answer_from(const Store& store, const Gallery& gallery, std::span<co
 QueryAnswer query_mesh(const Store& store, const TriangleMesh& mesh, const QueryOptions& options) {
   const Channel& channel = find_channel(options.channel);
   const Gallery gallery = load_gallery(store, channel);
-  const Eigen::VectorXd query =
-      channel.compute(compute_features(mesh, store.parameters(), options.progress));
+  const Eigen::VectorXd query = channel.compute(
+      compute_features(mesh, store.parameters(), options.progress, options.threads));
   return answer_from(store, gallery,
                      std::span(query.data(), static_cast<std::size_t>(query.size())), -1, options);
 }

@@ -22,6 +22,7 @@ struct QueryOptions {
   std::int64_t exact_below = 100000;
   std::function<void(const std::string&)> note = {};  ///< told what the index cache did
   Progress progress = {};                             ///< of solving the query's mesh
+  int threads = 0;                                    ///< that solve it, if it is large; 0: all
 };
 
 struct QueryResult {

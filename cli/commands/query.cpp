@@ -68,12 +68,14 @@ void add_query(CLI::App& timbre, Context& context) {
       ->capture_default_str();
   command.add_flag("--exact", args->options.exact, "compare with every shape");
   add_read_options(command, context);
+  add_threads_option(command, context);
   add_common_options(command, context, false);
   command.footer(
       "Text columns are parted by tabs; --json has all digits.\n"
       "Example:\n  timbre query shapes.timbre new.ply -n 5");
   command.callback([args, &context] {
     args->options.progress = context.progress();
+    args->options.threads = context.threads;
     args->options.note = [&context](const std::string& line) { context.note(line); };
     show(*args, ask(*args, context), context);
   });

@@ -1,5 +1,6 @@
 #include "timbre/cli/array_output.h"
 
+#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/mat_file.h"
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/cli/options.h"
@@ -36,6 +37,18 @@ nlohmann::json to_json_rows(const Eigen::MatrixXd& values) {
 
 std::string to_archive(const std::string& path, const std::vector<NamedArray>& arrays) {
   return array_format(path) == "mat" ? to_mat(arrays) : to_npz(arrays);
+}
+
+void require_fits(const std::string& path, Eigen::Index rows, Eigen::Index columns) {
+  if (path.empty()) return;
+  const std::string format = array_format(path);
+  if (format != "npz" && format != "mat") return;
+  constexpr double kGigabyte = 1073741824.0;
+  const double most = format == "mat" ? 2.0 : 4.0;
+  const double bytes = 8.0 * static_cast<double>(rows) * static_cast<double>(columns);
+  if (bytes < most * kGigabyte) return;
+  throw Error(ErrorKind::bad_request, "", format,
+              "holds at most " + to_text(most) + " GiB; write a .npy file");
 }
 
 std::string to_file_bytes(const std::string& path, const std::vector<NamedMatrix>& matrices) {

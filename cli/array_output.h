@@ -18,6 +18,10 @@ struct NamedMatrix {
 [[nodiscard]] std::string to_archive(const std::string& path,
                                      const std::vector<NamedArray>& arrays);
 
+/// Refuses what an archive cannot hold, before the work for it: 4 GiB in `.npz`, 2 GiB in `.mat`.
+/// @param rows, columns  of the largest array
+void require_fits(const std::string& path, Eigen::Index rows, Eigen::Index columns);
+
 /// The bytes of a result file by the ending of its path: `.npy` holds the first matrix,
 /// `.npz` and `.mat` all, `.txt` and `-` a row of the first matrix per line.
 /// @throws Error  bad_request for another ending

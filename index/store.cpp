@@ -1,9 +1,11 @@
 #include "timbre/index/store.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "timbre/index/detail/store_impl.h"
@@ -51,6 +53,8 @@ Store Store::create(const std::string& location, const StoreParameters& paramete
 
 bool is_store(const std::string& location) {
   constexpr std::string_view kMagic = "SQLite format 3";
+  std::error_code failure;  // a pipe keeps what was never read from it
+  if (!std::filesystem::is_regular_file(location, failure)) return false;
   std::ifstream file(location, std::ios::binary);
   std::string start(kMagic.size(), '\0');
   return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "timbre/analysis/core/error.h"
@@ -27,12 +28,13 @@ std::vector<Index> near_equal_spaces(const VectorXd& values, double near_equal) 
   std::iota(begin.begin(), begin.end(), 0);
   std::iota(end.begin(), end.end(), 0);
   const auto spread = [&](Index low, Index high) { return values[high] - values[low]; };
-  std::vector<Index> gaps(at(std::max<Index>(m - 1, 0)));
-  std::iota(gaps.begin(), gaps.end(), 0);
-  std::stable_sort(gaps.begin(), gaps.end(), [&](Index i, Index j) {
-    return spread(i, i + 1) * values[j + 1] < spread(j, j + 1) * values[i + 1];
-  });
-  for (const Index gap : gaps) {
+  std::vector<std::pair<double, Index>> gaps;  // relative, after each function
+  for (Index i = 0; i + 1 < m; ++i) {
+    const double above = values[i + 1];
+    gaps.emplace_back(above > 0.0 ? spread(i, i + 1) / above : 0.0, i);
+  }
+  std::sort(gaps.begin(), gaps.end());
+  for (const auto& [width, gap] : gaps) {
     const Index low = begin[at(gap)];
     const Index high = end[at(gap + 1)];
     if (near_equal == 0.0 || spread(low, high) > near_equal * values[high]) continue;
@@ -60,8 +62,8 @@ void require_possible(const MatrixXd& C, const VectorXd& values, const Alignment
                     std::to_string(C.rows()) + " x " + std::to_string(C.cols()) + " entries, of " +
                     std::to_string(values.size()) + " eigenvalues");
   }
-  if (!(options.near_equal >= 0.0)) {
-    throw Error(ErrorKind::bad_request, "", "near_equal", "must be 0 or more");
+  if (!(options.near_equal >= 0.0 && options.near_equal < 1.0)) {
+    throw Error(ErrorKind::bad_request, "", "near_equal", "must be a share, from 0 to below 1");
   }
 }
 

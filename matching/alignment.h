@@ -29,7 +29,7 @@ struct AlignedBasis {
 ///
 /// @param C       F(B) -> F(A), rows x m: a functional map, as `match` finds it
 /// @param values  m eigenvalues of B, ascending
-/// @throws Error  bad_request unless 1 <= count <= rows and <= m, and near_equal >= 0
+/// @throws Error  bad_request unless 1 <= count <= rows and <= m, and 0 <= near_equal < 1
 /// @see Jain, Zhang and van Kaick 2007 (unswitching); Levy and Zhang 2009, figure 22
 [[nodiscard]] AlignedBasis align_basis(const Eigen::MatrixXd& C, const Eigen::VectorXd& values,
                                        const AlignmentOptions& options = {});

@@ -50,6 +50,7 @@ enum class ElementType : std::uint8_t { float64, float32 };
 struct NamedArray {
   std::string name;
   std::string bytes;
+  bool is_index = false;  ///< numbers of vertices or the like, from 0; -1 is none
 };
 
 /// The bytes of a NumPy `.npz` file: a zip archive, stored, not deflated, without

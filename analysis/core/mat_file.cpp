@@ -19,12 +19,17 @@ void append(std::string& to, std::uint32_t value) {
   to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+constexpr std::size_t kPart = 8;  // what precedes a part, and what its size is a multiple of
+
+std::size_t padded_part(std::size_t size) { return kPart + (size + kPart - 1) / kPart * kPart; }
+
 // A part with its type and size, filled up to 8 bytes.
 void append_part(std::string& to, std::uint32_t type, std::string_view data) {
+  const std::size_t end = to.size() + padded_part(data.size());
   append(to, type);
   append(to, static_cast<std::uint32_t>(data.size()));
   to += data;
-  to.append((8 - data.size() % 8) % 8, '\0');
+  to.resize(end, '\0');
 }
 
 template <typename Number>
@@ -67,6 +72,19 @@ std::int32_t checked(std::int64_t size, const std::string& name) {
   return static_cast<std::int32_t>(size);
 }
 
+Error unsuitable(const std::string& name) {
+  return {ErrorKind::bad_request, "", name, "is of a kind that .mat files do not get"};
+}
+
+void count_from_one(std::string& integers) {
+  for (std::size_t i = 0; i < integers.size(); i += sizeof(std::int32_t)) {
+    std::int32_t index = 0;
+    std::memcpy(&index, integers.data() + i, sizeof index);
+    ++index;
+    std::memcpy(integers.data() + i, &index, sizeof index);
+  }
+}
+
 Content content_of(const NamedArray& array) {
   const NpyView view = view_npy(array.bytes);
   (void)checked(static_cast<std::int64_t>(view.data.size()), array.name);
@@ -76,13 +94,22 @@ Content content_of(const NamedArray& array) {
     return {kCharClass, kUint16, letters > 0 ? 1 : 0, letters, std::move(text)};
   }
   const bool is_real = view.type == "<f8";
-  if ((!is_real && view.type != "<i4") || view.shape.empty() || view.shape.size() > 2) {
-    throw Error(ErrorKind::bad_request, "", array.name, "is of a kind that .mat files do not get");
+  const bool is_integer = view.type == "<i4";
+  if ((!is_real && !is_integer) || (array.is_index && !is_integer) || view.shape.empty() ||
+      view.shape.size() > 2) {
+    throw unsuitable(array.name);
   }
+  const std::int64_t size = is_real ? sizeof(double) : sizeof(std::int32_t);
   const std::int32_t rows = checked(view.shape[0], array.name);
   const std::int32_t cols = view.shape.size() == 2 ? checked(view.shape[1], array.name) : 1;
+  if (std::int64_t{rows} * cols != static_cast<std::int64_t>(view.data.size()) / size ||
+      static_cast<std::int64_t>(view.data.size()) % size != 0) {
+    throw unsuitable(array.name);
+  }
+  std::string data = by_columns(view, static_cast<std::size_t>(size), rows, cols);
+  if (array.is_index) count_from_one(data);
   return {is_real ? kDoubleClass : kInt32Class, is_real ? kDouble : kInt32, rows, cols,
-          by_columns(view, is_real ? sizeof(double) : sizeof(std::int32_t), rows, cols)};
+          std::move(data)};
 }
 
 void require_name(const std::string& name) {
@@ -96,6 +123,19 @@ void require_name(const std::string& name) {
   throw Error(ErrorKind::bad_request, "", name, "cannot be the name of a variable in a .mat file");
 }
 
+void append_variable(std::string& out, const NamedArray& array) {
+  require_name(array.name);
+  const Content content = content_of(array);
+  std::string start;
+  append_part(start, kUint32, bytes_of(std::vector<std::uint32_t>{content.array_class, 0}));
+  append_part(start, kInt32, bytes_of(std::vector<std::int32_t>{content.rows, content.cols}));
+  append_part(start, kInt8, array.name);
+  append(out, kMatrix);
+  append(out, static_cast<std::uint32_t>(start.size() + padded_part(content.data.size())));
+  out += start;
+  append_part(out, content.type, content.data);
+}
+
 }  // namespace
 
 std::string to_mat(const std::vector<NamedArray>& arrays) {
@@ -104,16 +144,13 @@ std::string to_mat(const std::vector<NamedArray>& arrays) {
   out.resize(kText, ' ');
   out.append(8, '\0');                       // no data of subsystems
   out += std::string_view("\x00\x01IM", 4);  // version 1.0, little-endian
+  bool has_indices = false;
   for (const NamedArray& array : arrays) {
-    require_name(array.name);
-    const Content content = content_of(array);
-    std::string matrix;
-    append_part(matrix, kUint32, bytes_of(std::vector<std::uint32_t>{content.array_class, 0}));
-    append_part(matrix, kInt32, bytes_of(std::vector<std::int32_t>{content.rows, content.cols}));
-    append_part(matrix, kInt8, array.name);
-    append_part(matrix, content.type, content.data);
-    append_part(out, kMatrix, matrix);
+    append_variable(out, array);
+    has_indices = has_indices || array.is_index;
   }
+  if (has_indices)
+    append_variable(out, {"index_base", to_npy(Eigen::VectorXi(Eigen::VectorXi::Ones(1)))});
   return out;
 }
 

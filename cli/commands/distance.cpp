@@ -140,15 +140,6 @@ Summary stream_npy(const Arguments& args, const Context& context, const Triangle
   return summary;
 }
 
-void require_fits(const std::string& archive, Index rows, Index columns) {
-  constexpr double kGigabyte = 1073741824.0;
-  const double most = archive == "mat" ? 2.0 : 4.0;
-  const double bytes = 8.0 * static_cast<double>(rows) * static_cast<double>(columns);
-  if (bytes < most * kGigabyte) return;
-  throw Error(ErrorKind::bad_request, "", archive,
-              "holds at most " + to_text(most) + " GiB; write the distances to a .npy file");
-}
-
 void run(const Arguments& args, const Context& context) {
   const std::string format = context.output.empty() ? "txt" : array_format(context.output);
   context.require_output();
@@ -168,7 +159,7 @@ void run(const Arguments& args, const Context& context) {
     require_vertices(sources, n, from_file ? ErrorKind::bad_input : ErrorKind::bad_request);
     return 0;
   });
-  if (format == "npz" || format == "mat") require_fits(format, n, std::ssize(sources.sets));
+  require_fits(context.output, n, std::ssize(sources.sets));
 
   DistanceOptions options = args.distance;
   options.threads = context.threads;

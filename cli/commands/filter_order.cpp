@@ -18,12 +18,12 @@ constexpr double kPoorGap = 0.01;
 
 // Whole numbers, one for each vertex, as a result file; in `.npz` with real ones beside them.
 std::string to_bytes(const std::string& path, const std::string& name,
-                     const std::vector<std::int32_t>& numbers, const std::string& beside,
-                     const Eigen::VectorXd& values) {
+                     const std::vector<std::int32_t>& numbers, bool is_index,
+                     const std::string& beside, const Eigen::VectorXd& values) {
   const std::string format = array_format(path);
   if (format == "txt") return to_lines(numbers);
   if (format == "npy") return to_npy_bytes(numbers);
-  return to_archive(path, {{name, to_npy_bytes(numbers)}, {beside, to_npy(values)}});
+  return to_archive(path, {{name, to_npy_bytes(numbers), is_index}, {beside, to_npy(values)}});
 }
 
 void require_outputs(const Context& context) {
@@ -59,8 +59,8 @@ void run_fiedler_order(const FilterArguments& args, const Context& context) {
     context.answer(document, to_lines(found.order));
     return;
   }
-  context.write_result(context.output,
-                       to_bytes(context.output, "order", found.order, "vector", found.vector));
+  context.write_result(
+      context.output, to_bytes(context.output, "order", found.order, true, "vector", found.vector));
   document["output"] = context.output;
   context.answer(document, wrote(context.output));
 }
@@ -91,8 +91,8 @@ void run_nodal_domains(const FilterArguments& args, const Context& context) {
                  " % from the next: other eigenfunctions there may have other domains");
   }
   if (!context.output.empty()) {
-    context.write_result(context.output,
-                         to_bytes(context.output, "labels", found.label, "function", function));
+    context.write_result(context.output, to_bytes(context.output, "labels", found.label, false,
+                                                  "function", function));
   }
   nlohmann::json document = {{"mesh", args.mesh},
                              {"eigenfunction", number},

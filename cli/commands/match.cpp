@@ -109,8 +109,8 @@ std::string map_bytes(const MatchResult& result, const std::string& output) {
   const std::string format = array_format(output);
   if (format == "npy") return to_npy_bytes(result.ab);
   if (format == "txt") return to_lines(result.ab);
-  std::vector<NamedArray> arrays = {{"p2p_ab", to_npy_bytes(result.ab)},
-                                    {"p2p_ba", to_npy_bytes(result.ba)}};
+  std::vector<NamedArray> arrays = {{"p2p_ab", to_npy_bytes(result.ab), true},
+                                    {"p2p_ba", to_npy_bytes(result.ba), true}};
   if (!result.solutions.empty()) {
     arrays.push_back({"C_ab", to_npy(result.solutions[0].functional.ab)});
     arrays.push_back({"C_ba", to_npy(result.solutions[0].functional.ba)});
@@ -147,8 +147,9 @@ void add_match(CLI::App& timbre, Context& context) {
   add_common_options(command, context, true);
   command.footer(
       "MAP.txt and MAP.npy hold, for each vertex of SOURCE, the 0-based vertex of TARGET, -1 for\n"
-      "none; MAP.npz and MAP.mat both directions (p2p_ab, p2p_ba) and the functional maps (C_ab,\n"
-      "C_ba).\n"
+      "none; MAP.npz both directions (p2p_ab, p2p_ba) and the functional maps (C_ab, C_ba). "
+      "MAP.mat\n"
+      "has the same, but counts vertices from 1, and 0 is none.\n"
       "Example:\n  timbre match standing.ply running.ply -o map.npz");
   command.callback([args, &context] { run(*args, context); });
 }

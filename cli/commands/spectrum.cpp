@@ -37,8 +37,8 @@ void add_sparse(std::vector<NamedArray>& arrays, const std::string& name,
   using Eigen::VectorXi;
   arrays.push_back(
       {name + "_data", to_npy(VectorXd(Map<const VectorXd>(matrix.valuePtr(), nonzeros)))});
-  arrays.push_back(
-      {name + "_indices", to_npy(VectorXi(Map<const VectorXi>(matrix.innerIndexPtr(), nonzeros)))});
+  arrays.push_back({name + "_indices",
+                    to_npy(VectorXi(Map<const VectorXi>(matrix.innerIndexPtr(), nonzeros))), true});
   arrays.push_back({name + "_indptr", to_npy(VectorXi(Map<const VectorXi>(matrix.outerIndexPtr(),
                                                                           matrix.cols() + 1)))});
   const auto rows = static_cast<int>(matrix.rows());
@@ -55,7 +55,7 @@ Points nodes_of(const TriangleMesh& mesh, const Operator& op) {
 std::string archive(const TriangleMesh& mesh, const Operator& op, const Spectrum& found,
                     const std::string& output) {
   std::vector<NamedArray> arrays = {
-      {"vertices", to_npy(mesh.vertices)},    {"faces", to_npy(mesh.faces)},
+      {"vertices", to_npy(mesh.vertices)},    {"faces", to_npy(mesh.faces), true},
       {"evals", to_npy(found.values)},        {"evecs", to_npy(found.vectors)},
       {"residuals", to_npy(found.residuals)}, {"mass", to_npy(op.lumped_mass)}};
   add_sparse(arrays, "W", op.stiffness);
@@ -185,6 +185,7 @@ void run(const Arguments& args, const Context& context) {
   SpectrumOptions options = args.spectrum;
   options.threads = context.threads;
   options.progress = context.progress();
+  require_fits(context.output, op.stiffness.rows(), options.count);
   const auto document_of = [&](const Spectrum& found) { return describe(args.mesh, op, found); };
   const Spectrum found = for_file(args.mesh, [&] {
     return is_streamed(context) ? stream_spectrum(context, op, options, args.stream, document_of)

@@ -51,7 +51,7 @@ std::string map_bytes(const std::vector<Reflection>& found, const std::string& o
   if (format == "txt") return to_lines(found[0].map);
   std::vector<NamedArray> arrays;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    arrays.push_back({"map_" + std::to_string(i), to_npy_bytes(found[i].map)});
+    arrays.push_back({"map_" + std::to_string(i), to_npy_bytes(found[i].map), true});
     arrays.push_back({"C_" + std::to_string(i), to_npy(found[i].C)});
   }
   return to_archive(output, arrays);
@@ -92,7 +92,8 @@ void add_symmetry(CLI::App& timbre, Context& context) {
   add_common_options(command, context, true);
   command.footer(
       "MAP.txt and MAP.npy hold the best reflection: for each vertex the 0-based vertex of its\n"
-      "mirror image; MAP.npz and MAP.mat all of them (map_0, C_0, map_1, ...).\n"
+      "mirror image; MAP.npz all of them (map_0, C_0, map_1, ...);\n"
+      "MAP.mat, too, and counts vertices from 1.\n"
       "Example:\n  timbre symmetry horse.ply -o mirror.txt");
   command.callback([args, &context] { run(*args, context); });
 }

@@ -5,6 +5,7 @@ align_test.py TIMBRE"""
 import json
 import math
 import os
+import shutil
 import sys
 import tempfile
 import unittest
@@ -12,6 +13,7 @@ import zipfile
 
 import command_test
 import numpy_file
+import shapes
 
 TIMBRE = os.path.abspath(sys.argv.pop(1))
 command_test.CommandTest.TIMBRE = TIMBRE
@@ -22,16 +24,16 @@ class Align(command_test.CommandTest):
     @classmethod
     def setUpClass(cls):
         """Three poses of one dog; line i of its .vts is the vertex of point i."""
-        cls.shapes = tempfile.TemporaryDirectory()
+        cls.made = tempfile.TemporaryDirectory()
         maker = command_test.CommandTest()
-        maker.run_timbre("dataset", "make", "creatures", "-o", cls.shapes.name, "--species", "dog",
+        maker.run_timbre("dataset", "make", "creatures", "-o", cls.made.name, "--species", "dog",
                          "--sets", "shared", "--poses", "3", "--resolution", "1200", "-q")
-        folder = os.path.join(cls.shapes.name, "shared")
+        folder = os.path.join(cls.made.name, "shared")
         cls.dogs = [os.path.join(folder, f"dog{i}.ply") for i in range(3)]
 
     @classmethod
     def tearDownClass(cls):
-        cls.shapes.cleanup()
+        cls.made.cleanup()
 
     def align(self, *args, code=0):
         return self.run_timbre("align", *args, "-k", str(COUNT), "--map-functions", "60", code=code)
@@ -85,7 +87,7 @@ class Align(command_test.CommandTest):
                 self.assertEqual(stored.read(), files.read())
         self.refuse(database, "--reference", "cat", "-o", self.path("none"), words="no shape is named cat")
 
-    def test_what_stands_there_is_kept(self):
+    def test_what_stands_there_is_kept_without_force(self):
         out = self.path("aligned")
         os.mkdir(out)
         kept = os.path.join(out, "dog2.npz")
@@ -96,22 +98,58 @@ class Align(command_test.CommandTest):
             self.assertEqual(file.read(), "mine")
         self.assertEqual(os.listdir(out), ["dog2.npz"])
 
-    def test_two_subjects_cannot_share_a_file(self):
-        other = self.put("dog1.off", b"")
-        self.refuse(self.dogs[1], other, "--reference", self.dogs[0], "-o", self.path("a"), words="file of")
+    def test_one_bad_shape_does_not_end_the_others(self):
+        """Nor does the basis of an earlier reference stay in its place."""
+        out = self.path("aligned")
+        os.mkdir(out)
+        with open(os.path.join(out, "broken.npz"), "w") as file:
+            file.write("of another reference")
+        broken = self.put("broken.off", "OFF\n3 1 0\n0 0 0\n1 0\n")
+        done = self.align(broken, self.dogs[1], "--reference", self.dogs[0], "-o", out, "--force", "--json", code=1)
+        self.assertIn(b"broken.off", done.stderr)
+        answer = json.loads(done.stdout)
+        self.assertEqual(answer["failed"], 1)
+        self.assertIn("broken.off", answer["subjects"][0]["error"])
+        self.assertEqual(answer["subjects"][1]["verdict"], "clear")
+        self.assertEqual(sorted(os.listdir(out)), ["dog0.npz", "dog1.npz"])
+
+    def test_names_are_as_long_as_needed_to_tell_subjects_apart(self):
+        for folder in ("a", "b"):
+            os.mkdir(self.path(folder))
+            shutil.copy(self.dogs[1], self.path(f"{folder}/dog.ply"))
+        out = self.path("aligned")
+        self.align(self.path("a/dog.ply"), self.path("b/dog.ply"), self.path("a/../a/dog.ply"), "--reference",
+                   self.path("b/dog.ply"), "-o", out)
+        self.assertEqual(sorted(os.listdir(out)), ["a_dog.ply.npz", "b_dog.ply.npz"])
 
     def test_what_is_no_map_is_not_written(self):
-        """A sphere is no dog."""
-        sphere = self.path("sphere.ply")
-        self.run_timbre("dataset", "make", "sphere", "--resolution", "400", "-o", sphere, "-q")
+        """A thin ring is no dog."""
+        ring = self.put("ring.off", shapes.torus_off(12.0, 0.2, 120, 8))
         out = self.path("aligned")
-        done = self.align(sphere, "--reference", self.dogs[0], "-o", out, "--strict", code=3)
-        self.assertNotIn(b"clear", done.stdout)
+        done = self.align(ring, "--reference", self.dogs[0], "-o", out, "--strict", "--json", code=3)
+        answer = json.loads(done.stdout)
+        self.assertEqual(answer["subjects"][0]["verdict"], "failed")
+        self.assertIsNone(answer["comparable"])
+        self.assertEqual(os.listdir(out), ["dog0.npz"])
 
-    def test_more_functions_than_there_are_is_refused(self):
-        done = self.run_timbre("align", *self.dogs, "--reference", self.dogs[0], "-k", "90", "--map-functions",
-                               "60", "-o", self.path("a"), code=2)
-        self.assertIn(b"-k", done.stderr)
+    def test_nothing_is_mixed_without_near(self):
+        out = self.path("aligned")
+        self.align(self.dogs[1], "--reference", self.dogs[0], "-o", out, "--near", "0")
+        with zipfile.ZipFile(os.path.join(out, "dog1.npz")) as archive:
+            numbers = numpy_file.read(archive.read("mixture.npy"))[1]
+        rows = len(numbers) // COUNT
+        for i in range(COUNT):
+            column = [abs(x) for x in numbers[i * rows:(i + 1) * rows]]
+            self.assertAlmostEqual(max(column), 1.0)
+            self.assertAlmostEqual(sum(column), 1.0)
+
+    def test_what_cannot_be_is_refused(self):
+        for words, cause in ((["-k", "90", "--map-functions", "60"], b"-k"), (["--near", "5"], b"--near"),
+                             (["--map-functions", "300"], b"--map-functions")):
+            done = self.run_timbre("align", *self.dogs, "--reference", self.dogs[0], *words, "-o", self.path("a"), code=2)
+            self.assertIn(cause, done.stderr)
+        self.refuse(*self.dogs, "--reference", self.path("none.ply"), "-o", self.path("a"), code=1, words="none.ply")
+        self.assertFalse(os.path.exists(self.path("a")))
 
 
 if __name__ == "__main__":

@@ -70,26 +70,39 @@ TEST(AlignBasis, SaysWhereThereIsNoCounterpart) {
   EXPECT_EQ(comparable_functions(basis), 3);
 }
 
+TEST(AlignBasis, TakesSeveralConstantsForOneSpace) {
+  VectorXd values(6);
+  values << 0, 0, 0, 3, 3.1, 8;
+  MatrixXd C = MatrixXd::Identity(6, 6);
+  C.topLeftCorner(3, 3) = random_rotation(3);
+  C.block(3, 3, 2, 2) = random_rotation(2);
+  EXPECT_TRUE((C * align_basis(C, values, {.count = 6}).mixture).isIdentity(1e-12));
+}
+
 TEST(AlignBasis, RefusesWhatDoesNotFit) {
   const MatrixXd C = MatrixXd::Identity(3, 3);
   EXPECT_EQ(refused_request([&] { (void)align_basis(C, VectorXd::Zero(3), {.count = 4}); }),
             "count: is 4; the map has 3 x 3 entries, of 3 eigenvalues");
   EXPECT_EQ(refused_request(
                 [&] { (void)align_basis(C, VectorXd::Zero(3), {.count = 3, .near_equal = -1.0}); }),
-            "near_equal: must be 0 or more");
+            "near_equal: must be a share, from 0 to below 1");
 }
 
 // A renumbered copy whose eigenfunctions have other signs, orders and rotations.
 TEST(AlignBasis, MakesTheBasesOfCopiesEqual) {
-  const SurfaceOptions small = {.eigenpairs = 100, .samples = 600, .geodesic_samples = 300};
+  const SurfaceOptions small = {.eigenpairs = 80, .samples = 600, .geodesic_samples = 300};
   const TriangleMesh mesh = make_lump(12);
   const std::vector<std::int32_t> order = random_order(mesh.vertices.rows(), 5);
   const MatchSurface a = prepare_surface(mesh, small);
-  const MatchSurface b = prepare_surface(renumbered(mesh, order), small);
-  const MatchResult found = match(a, b);
-  const AlignedBasis basis = align_basis(found.solutions[0].functional.ab, b.values, {.count = 40});
+  SurfaceOptions larger = small;
+  larger.eigenpairs = 100;
+  const MatchSurface b = prepare_surface(renumbered(mesh, order), larger);
+  const MatchResult found = match(a, b);  // of as many functions as the smaller spectrum has
+  const MatrixXd& C = found.solutions[0].functional.ab;
+  ASSERT_EQ(C.cols(), 80);
+  const AlignedBasis basis = align_basis(C, b.values.head(80), {.count = 40});
   EXPECT_EQ(comparable_functions(basis, 0.999), 40);
-  const MatrixXd aligned = b.vectors * basis.mixture;
+  const MatrixXd aligned = b.vectors.leftCols(80) * basis.mixture;
   EXPECT_TRUE(aligned(order, Eigen::all).isApprox(a.vectors.leftCols(40), 1e-3));
   EXPECT_TRUE(basis.values.isApprox(a.values.head(40), 1e-6));
 }

@@ -60,8 +60,8 @@ class BlockBasis {
   [[nodiscard]] Square subtract(const Square& H, double* U, int first);
   /// Cholesky QR: U := U R^-1 with R from `factorize_gram`, and columns of 0 where it has rows of
   /// 0; then Z = M U.
-  BlockFactor orthonormalize(const Square& G, const Eigen::VectorXd& least, double* U,
-                             double* Z) const;
+  [[nodiscard]] BlockFactor orthonormalize(const Square& G, const Eigen::VectorXd& least, double* U,
+                                           double* Z) const;
 
  private:
   // Some rows, that stay in cache while all blocks pass by.

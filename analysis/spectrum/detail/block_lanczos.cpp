@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/matrix_product.h"
 #include "timbre/analysis/spectrum/detail/row_pieces.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -57,7 +59,7 @@ void BlockLanczos::start() {
   write_random(U);
   for (int pass = 0; pass < 2; ++pass) {
     const Square gram = locked_.subtract(locked_.products(U, 0), U, 0);
-    (void)basis_.orthonormalize(gram, Eigen::VectorXd::Zero(options_.width), U, Z_.data());
+    (void)basis_.orthonormalize(gram, VectorXd::Zero(options_.width), U, Z_.data());
   }
   basis_.append_next();
 }
@@ -95,16 +97,23 @@ void BlockLanczos::step() {
   diagonal += H.bottomRows(P);
   largest_ = std::max(largest_, diagonal.cwiseAbs().maxCoeff());
   Square coupling = Square::Identity(P, P);
-  Eigen::VectorXd least = Eigen::VectorXd::Constant(P, kNothing * largest_);
-  for (int pass = 0; pass < kPasses; ++pass) {
+  VectorXd least = VectorXd::Constant(P, kNothing * largest_);
+  bool is_done = false;
+  for (int pass = 0; pass < kPasses && !is_done; ++pass) {
     if (pass > 0) H = basis_.products(U, first);
     Square gram = basis_.subtract(H, U, first);
-    if (locked_.blocks() > 0) gram = locked_.subtract(locked_.products(U, 0), U, 0);
+    VectorXd removed = H.cwiseAbs().colwise().maxCoeff();
+    if (locked_.blocks() > 0) {
+      const Square of_locked = locked_.products(U, 0);
+      gram = locked_.subtract(of_locked, U, 0);
+      removed = removed.cwiseMax(of_locked.cwiseAbs().colwise().maxCoeff().transpose());
+    }
     const BlockFactor factor = basis_.orthonormalize(gram, least, U, Z_.data());
     coupling = factor.R * coupling;
+    const VectorXd left = factor.R.diagonal();
     std::vector<int> nothing;
     for (int c = 0; c < P; ++c) {
-      if (factor.R(c, c) == 0.0) nothing.push_back(c);
+      if (left[c] == 0.0) nothing.push_back(c);
       // Beside what the columns are now; those that are random have no coupling.
       least[c] = coupling(c, c) > 0.0 ? kNothing * largest_ / coupling(c, c) : 0.0;
     }
@@ -113,10 +122,13 @@ void BlockLanczos::step() {
       first = 0;
       continue;
     }
-    const double removed = H.cwiseAbs().maxCoeff();
-    const double left = factor.R.diagonal().maxCoeff();
-    if (pass == 0 && first == 0 && j >= 4) drift_ = std::max(drift_, removed / left);
-    if (factor.smallest_pivot > 1e-6 && removed < 1e3 * left) break;
+    if (pass == 0 && first == 0 && j >= 4) {
+      drift_ = std::max(drift_, removed.cwiseQuotient(left).maxCoeff());
+    }
+    is_done = factor.smallest_pivot > 1e-6 && (removed.array() < 1e3 * left.array()).all();
+  }
+  if (!is_done) {
+    throw Error(ErrorKind::not_converged, "", "spectrum", "no vectors are left outside the basis");
   }
   if (drift_ > kMostDrift) full_passes_only_ = true;
   projected_.append(last_factor_, Square(0.5 * (diagonal + diagonal.transpose())));
@@ -142,7 +154,7 @@ bool BlockLanczos::try_goal(double shift, const BandGoal& goal, BandPairs& found
   std::sort(above.begin(), above.end());
   const auto has_converged = [&](const std::pair<double, int>& pair) {
     return errors[at(pair.second)] <=
-           options_.tolerance * (std::abs(pair.first) + std::max(goal.scale, std::abs(shift)));
+           goal.tolerance * (std::abs(pair.first) + std::max(goal.scale, std::abs(shift)));
   };
   const auto end_below = std::find_if_not(below.begin(), below.end(), has_converged);
   const auto at_cut =

@@ -14,7 +14,6 @@ namespace timbre::detail {
 
 struct LanczosOptions {
   int width = 8;  ///< vectors in a block, 8 or 16: more is faster to solve, but a larger basis
-  double tolerance = 1e-9;                 ///< of a pair, beside |lambda| + scale
   int most_blocks = 64;                    ///< of the basis
   int threads = 1;                         ///< 0: all cores
   std::function<void(int)> on_solve = {};  ///< after so many solves; may throw
@@ -29,10 +28,11 @@ struct LanczosMemory {
 
 /// What is wanted of a run.
 struct BandGoal {
-  double cut = 0.0;    ///< pairs at or below are known
-  int left = 0;        ///< how many lie between the cut and the shift
-  int right = 0;       ///< how many above the shift are wanted, at least
-  double scale = 0.0;  ///< of eigenvalues: errors are measured beside |lambda| + scale
+  double cut = 0.0;         ///< pairs at or below are known
+  int left = 0;             ///< how many lie between the cut and the shift
+  int right = 0;            ///< how many above the shift are wanted, at least
+  double scale = 0.0;       ///< of eigenvalues: errors are measured beside |lambda| + scale
+  double tolerance = 1e-9;  ///< of a pair, in that measure
 };
 
 /// Converged pairs around a shift: an interval without a gap, as far as a Krylov space can see.

@@ -35,10 +35,11 @@ struct ComponentSolveOptions {
   double tolerance = 1e-9;   ///< as SlicingOptions has it
   bool certify = true;
   FactorizationBackend backend = FactorizationBackend::automatic;
-  bool keep_all = false;              ///< as SlicingOptions has it
-  int threads = 1;                    ///< 0: all cores. Results do not depend on it
-  std::function<void(int)> on_solve;  ///< after so many solves with a factor, 0 while it is made; may throw
-  PhaseClock* clock = nullptr;        ///< must outlive the solver
+  bool keep_all = false;  ///< as SlicingOptions has it
+  int threads = 1;        ///< 0: all cores. Results do not depend on it
+  /// After so many solves with a factor, 0 while it is made; may throw.
+  std::function<void(int)> on_solve;
+  PhaseClock* clock = nullptr;  ///< must outlive the solver
 };
 
 /// The eigenpairs of a component, from the lowest, found little by little and handed on in that

@@ -29,13 +29,6 @@ constexpr Index kLarge = 400000;    // unknowns, and above: the basis must be sm
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
 }
 
-// Pairs of different bands are orthogonal to their errors over their distance, and the more are
-// wanted, the closer they lie beside the largest, by which errors are measured.
-double pair_tolerance(const SlicingOptions& options) {
-  constexpr double kFew = 300.0;
-  return options.tolerance * std::min(1.0, kFew / static_cast<double>(options.count));
-}
-
 // Large bands need a large basis, small ones more factorisations: measured on ellipsoids.
 int half_band(const SlicingOptions& options, Index n) {
   constexpr Index kSmall = 20000;
@@ -47,7 +40,7 @@ int half_band(const SlicingOptions& options, Index n) {
 int most_blocks(const SlicingOptions& options, Index n) {
   const int width = options.width;
   const int usual = 6 * (2 * half_band(options, n) + 8) / width + 8;
-  return std::clamp(usual, 16, std::max(2, static_cast<int>(n) / width - 1));
+  return std::min(std::max(usual, 16), std::max(2, static_cast<int>(n) / width - 1));
 }
 
 std::unique_ptr<ShiftedFactor> ordered(const Eigen::SparseMatrix<double>& K,
@@ -69,7 +62,6 @@ SpectrumSlicer::SpectrumSlicer(const Eigen::SparseMatrix<double>& K,
       usual_half_(half_band(options, K.rows())),
       factor_(ordered(K, M, positions, options)),
       lanczos_(*factor_, {.width = options.width,
-                          .tolerance = pair_tolerance(options),
                           .most_blocks = most_blocks(options, K.rows()),
                           .threads = options.threads,
                           .on_solve = options.on_solve,
@@ -141,7 +133,7 @@ void SpectrumSlicer::search_around(double shift) {
   const auto ahead =
       std::min({static_cast<Index>(half_), state_.wanted + 1 - count_, pairs_.rows() - count_});
   BandGoal goal{state_.cut, static_cast<int>(need), static_cast<int>(std::max<Index>(0, ahead)),
-                scale()};
+                scale(), tolerance()};
   BandPairs band = lanczos_.run(shift, goal);
   state_.slices.push_back({shift, count_, 0, 1});
   // A cluster may hide the gap behind it.
@@ -301,7 +293,7 @@ void SpectrumSlicer::repair(double shift, const BandGoal& goal, BandPairs band) 
   rest.cut = state_.cut;
   Index have = 0;
   if (rest.cut != goal.cut) {
-    band = lanczos_.run(shift, {state_.cut, static_cast<int>(need), 0, goal.scale});
+    band = lanczos_.run(shift, {state_.cut, static_cast<int>(need), 0, goal.scale, goal.tolerance});
   }
   for (;;) {
     if (band.left == 0 || have + band.left > need) fail("the inertia count cannot be met");
@@ -349,6 +341,13 @@ void SpectrumSlicer::step_back() {
 // About the largest eigenvalue wanted.
 double SpectrumSlicer::scale() const {
   return std::max(state_.slope, spacing_) * static_cast<double>(state_.wanted);
+}
+
+// Pairs of different bands are orthogonal to their errors over their distance, and the more are
+// wanted, the closer they lie beside the largest, by which errors are measured.
+double SpectrumSlicer::tolerance() const {
+  constexpr double kFew = 300.0;
+  return options_.tolerance * std::min(1.0, kFew / static_cast<double>(state_.wanted));
 }
 
 void SpectrumSlicer::advance_to(double cut, Index accepted) {

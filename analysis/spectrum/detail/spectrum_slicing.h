@@ -17,10 +17,11 @@ namespace timbre::detail {
 
 struct SlicingOptions {
   Eigen::Index count = 100;  ///< pairs wanted, from the lowest; `want` can raise it
-  double tolerance = 1e-9;   ///< of a pair, beside |lambda| + the largest wanted
-  int half = 0;              ///< pairs on each side of a shift, about; 0: chosen by size
-  int width = 8;             ///< of blocks, 8 or 16: wider ones solve faster, with a larger basis
-  bool certify = true;       ///< count at the end of the list, too
+  /// Of a pair, beside |lambda| + the largest wanted; less where more than 300 are wanted.
+  double tolerance = 1e-9;
+  int half = 0;         ///< pairs on each side of a shift, about; 0: chosen by size
+  int width = 8;        ///< of blocks, 8 or 16: wider ones solve faster, with a larger basis
+  bool certify = true;  ///< count at the end of the list, too
   /// The kernel of K is the constants: the first pair becomes exactly that.
   bool has_constants = false;
   FactorizationBackend backend = FactorizationBackend::automatic;
@@ -28,8 +29,8 @@ struct SlicingOptions {
   bool keep_all = false;
   std::uint64_t seed = 1;  ///< of start vectors
   int threads = 1;         ///< 0: all cores. Results do not depend on it
-  std::function<void(int)> on_solve =
-      {};  ///< after so many solves with a factor, 0 while it is made; may throw
+  /// After so many solves with a factor, 0 while it is made; may throw.
+  std::function<void(int)> on_solve = {};
   PhaseClock* clock = nullptr;  ///< must outlive the slicer
 };
 
@@ -131,6 +132,7 @@ class SpectrumSlicer {
   void advance_to(double cut, Eigen::Index accepted);
   [[nodiscard]] bool is_cut_counted() const { return state_.found == state_.certain; }
   [[nodiscard]] double scale() const;
+  [[nodiscard]] double tolerance() const;
 
   const Eigen::SparseMatrix<double>& mass_;
   SlicingOptions options_;

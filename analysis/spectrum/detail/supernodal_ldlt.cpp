@@ -149,21 +149,21 @@ struct SupernodalLdlt::Impl {
     const std::thread::id caller = std::this_thread::get_id();
     std::atomic<bool> is_stopped = false;
     const auto stop = [&] {
-      if (is_stopped) return true;
-      if (!options.between || std::this_thread::get_id() != caller) return false;
-      try {
+      if (!is_stopped && options.between && std::this_thread::get_id() == caller) {
         options.between();
-      } catch (...) {
-        is_stopped = true;
-        throw;
       }
-      return false;
+      return is_stopped.load();
     };
     const std::vector<double> scale = row_scales(pencil, shift);
     const FactorInput input{symbolic, layout, pencil, entry_row, scale, kernels, shift};
     parallel_for(std::ssize(plan.subtrees), threads, [&](std::int64_t i) {
-      const auto fronts = workspaces.borrow(symbolic);
-      run(input, plan.subtrees[i], *fronts, stop);
+      try {
+        const auto fronts = workspaces.borrow(symbolic);
+        run(input, plan.subtrees[i], *fronts, stop);
+      } catch (...) {
+        is_stopped = true;
+        throw;
+      }
     });
     const auto fronts = workspaces.borrow(symbolic);
     run(input, plan.top, *fronts, stop);

@@ -105,15 +105,21 @@ INSTANTIATE_TEST_SUITE_P(Cases, EveryRun,
                          testing::Combine(testing::Values(8, 16),
                                           testing::Values(MassKind::lumped, MassKind::consistent)));
 
+// Large enough for several pieces of rows, and subtrees of the factor, at once.
 TEST(BlockLanczos, RepeatsItselfForASeedAndOnAnyThreads) {
-  const Problem problem(compute_operator(make_ellipsoid(1.0, 1.3, 1.9, 8)));
-  const double shift = problem.shift_above(20);
-  ASSERT_FALSE(problem.factor->factorize(shift).near_singular);
+  const TriangleMesh mesh = make_ellipsoid(1.0, 1.3, 1.9, 32);
+  ASSERT_GT(mesh.vertices.rows(), 8192);
+  const Operator op = compute_operator(mesh);
   const auto vectors = [&](int threads) {
-    BlockLanczos lanczos(*problem.factor, {.threads = threads});
-    (void)lanczos.run(shift, {kNowhere, 20, 10, problem.exact[20]});
-    MatrixXd X(problem.op.mass.rows(), 30);
-    lanczos.write_vectors(0, 30, X.data(), X.rows());
+    const auto factor = make_shifted_factor(op.stiffness, op.mass, &mesh.vertices,
+                                            FactorizationBackend::supernodal, threads);
+    constexpr double kShift = 9.0;
+    EXPECT_FALSE(factor->factorize(kShift).near_singular);
+    BlockLanczos lanczos(*factor, {.threads = threads});
+    const BandPairs band = lanczos.run(kShift, {kNowhere, 5, 10, kShift});
+    EXPECT_GE(band.right, 10);
+    MatrixXd X(op.mass.rows(), 10);
+    lanczos.write_vectors(0, 10, X.data(), X.rows());
     return X;
   };
   const MatrixXd one = vectors(1);

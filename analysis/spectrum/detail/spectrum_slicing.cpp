@@ -346,7 +346,7 @@ double SpectrumSlicer::scale() const {
 // Pairs of different bands are orthogonal to their errors over their distance, and the more are
 // wanted, the closer they lie beside the largest, by which errors are measured.
 double SpectrumSlicer::tolerance() const {
-  constexpr double kFew = 300.0;
+  constexpr double kFew = 100.0;
   return options_.tolerance * std::min(1.0, kFew / static_cast<double>(state_.wanted));
 }
 

@@ -17,7 +17,7 @@ namespace timbre::detail {
 
 struct SlicingOptions {
   Eigen::Index count = 100;  ///< pairs wanted, from the lowest; `want` can raise it
-  /// Of a pair, beside |lambda| + the largest wanted; less where more than 300 are wanted.
+  /// Of a pair, beside |lambda| + the largest wanted; less where more than 100 are wanted.
   double tolerance = 1e-9;
   int half = 0;         ///< pairs on each side of a shift, about; 0: chosen by size
   int width = 8;        ///< of blocks, 8 or 16: wider ones solve faster, with a larger basis

@@ -7,6 +7,7 @@ cd "$(dirname "$0")"
 
 preset=${1:-release}
 install_packages packages.txt
+[ "$preset" = release ] || install_packages packages-dev.txt
 configure_and_build "$preset"
 say "Testing ($preset)"
 ctest --test-dir "build/$preset" --parallel "$(nproc)" --output-on-failure --progress

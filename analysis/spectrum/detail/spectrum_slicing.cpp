@@ -29,7 +29,7 @@ constexpr Index kLarge = 400000;    // unknowns, and above: the basis must be sm
   throw Error(ErrorKind::not_converged, "", "spectrum", cause);
 }
 
-// Large bands need a large basis, small ones more factorisations: measured on ellipsoids.
+// Large bands need a large basis, small ones more factorisations.
 int half_band(const SlicingOptions& options, Index n) {
   constexpr Index kSmall = 20000;
   if (options.half != 0) return options.half;

@@ -10,8 +10,8 @@ namespace {
 
 TEST(PreferHugePages, TakesMemoryOfAnySizeAndPlaceAndChangesNothing) {
   std::vector<char> memory(std::size_t{9} << 20U, 'x');
-  for (const std::size_t begin : {0, 1, 4096, 5000000}) {
-    for (const std::size_t size : {0, 1, 4096, 4000000}) {
+  for (const std::size_t begin : {0U, 1U, 4096U, 5000000U}) {
+    for (const std::size_t size : {0U, 1U, 4096U, 4000000U}) {
       prefer_huge_pages(memory.data() + begin, size);
     }
   }

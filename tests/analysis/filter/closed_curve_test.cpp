@@ -125,7 +125,7 @@ TEST(ClosedCurve, BecomesAnAffineRegularPolygonOnTheWay) {
   const Eigen::RowVector2d centroid = points.colwise().mean();
   Eigen::RowVector2d a = Eigen::RowVector2d::Zero();
   Eigen::RowVector2d b = Eigen::RowVector2d::Zero();
-  const auto turn = [n](Index j) {
+  const auto turn = [](Index j) {
     return 2.0 * pi * static_cast<double>(j) / static_cast<double>(n);
   };
   for (Index j = 0; j < n; ++j) {

@@ -12,8 +12,15 @@ namespace timbre {
 namespace {
 
 // Numbers of the format, as its description has them.
-enum : std::uint32_t { kInt8 = 1, kUint16 = 4, kInt32 = 5, kUint32 = 6, kDouble = 9, kMatrix = 14 };
-enum : std::uint32_t { kCharClass = 4, kDoubleClass = 6, kInt32Class = 12 };
+enum class Type : std::uint32_t {
+  int8 = 1,
+  uint16 = 4,
+  int32 = 5,
+  uint32 = 6,
+  float64 = 9,
+  matrix = 14
+};
+enum class ArrayClass : std::uint32_t { text = 4, float64 = 6, int32 = 12 };
 
 void append(std::string& to, std::uint32_t value) {
   to.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -24,9 +31,9 @@ constexpr std::size_t kPart = 8;  // what precedes a part, and what its size is 
 std::size_t padded_part(std::size_t size) { return kPart + (size + kPart - 1) / kPart * kPart; }
 
 // A part with its type and size, filled up to 8 bytes.
-void append_part(std::string& to, std::uint32_t type, std::string_view data) {
+void append_part(std::string& to, Type type, std::string_view data) {
   const std::size_t end = to.size() + padded_part(data.size());
-  append(to, type);
+  append(to, static_cast<std::uint32_t>(type));
   append(to, static_cast<std::uint32_t>(data.size()));
   to += data;
   to.resize(end, '\0');
@@ -59,7 +66,8 @@ std::string narrowed(std::string_view wide) {
 }
 
 struct Content {
-  std::uint32_t array_class, type;
+  ArrayClass array_class;
+  Type type;
   std::int32_t rows, cols;
   std::string data;
 };
@@ -91,7 +99,7 @@ Content content_of(const NamedArray& array) {
   if (view.type.starts_with("<U")) {
     std::string text = narrowed(view.data);
     const auto letters = static_cast<std::int32_t>(text.size() / 2);
-    return {kCharClass, kUint16, letters > 0 ? 1 : 0, letters, std::move(text)};
+    return {ArrayClass::text, Type::uint16, letters > 0 ? 1 : 0, letters, std::move(text)};
   }
   const bool is_real = view.type == "<f8";
   const bool is_integer = view.type == "<i4";
@@ -108,8 +116,8 @@ Content content_of(const NamedArray& array) {
   }
   std::string data = by_columns(view, static_cast<std::size_t>(size), rows, cols);
   if (array.is_index) count_from_one(data);
-  return {is_real ? kDoubleClass : kInt32Class, is_real ? kDouble : kInt32, rows, cols,
-          std::move(data)};
+  return {is_real ? ArrayClass::float64 : ArrayClass::int32, is_real ? Type::float64 : Type::int32,
+          rows, cols, std::move(data)};
 }
 
 void require_name(const std::string& name) {
@@ -127,10 +135,12 @@ void append_variable(std::string& out, const NamedArray& array) {
   require_name(array.name);
   const Content content = content_of(array);
   std::string start;
-  append_part(start, kUint32, bytes_of(std::vector<std::uint32_t>{content.array_class, 0}));
-  append_part(start, kInt32, bytes_of(std::vector<std::int32_t>{content.rows, content.cols}));
-  append_part(start, kInt8, array.name);
-  append(out, kMatrix);
+  append_part(
+      start, Type::uint32,
+      bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(content.array_class), 0}));
+  append_part(start, Type::int32, bytes_of(std::vector<std::int32_t>{content.rows, content.cols}));
+  append_part(start, Type::int8, array.name);
+  append(out, static_cast<std::uint32_t>(Type::matrix));
   append(out, static_cast<std::uint32_t>(start.size() + padded_part(content.data.size())));
   out += start;
   append_part(out, content.type, content.data);

@@ -109,7 +109,7 @@ class Cohort {
       if (parts == 0) return shape_stem(text);
       fs::path folder = fs::absolute(path).lexically_normal().parent_path();
       for (int i = 1; i < parts; ++i, folder = folder.parent_path()) {
-        text = folder.filename().string() + "_" + text;
+        text.insert(0, folder.filename().string() + "_");
       }
     }
     std::replace(text.begin(), text.end(), '/', '_');

@@ -27,7 +27,7 @@ class Align(command_test.CommandTest):
         cls.made = tempfile.TemporaryDirectory()
         maker = command_test.CommandTest()
         maker.run_timbre("dataset", "make", "creatures", "-o", cls.made.name, "--species", "dog",
-                         "--sets", "shared", "--poses", "3", "--resolution", "1200", "-q")
+                         "--sets", "shared", "--poses", "3", "--resolution", "1000", "-q")
         folder = os.path.join(cls.made.name, "shared")
         cls.dogs = [os.path.join(folder, f"dog{i}.ply") for i in range(3)]
 
@@ -36,7 +36,7 @@ class Align(command_test.CommandTest):
         cls.made.cleanup()
 
     def align(self, *args, code=0):
-        return self.run_timbre("align", *args, "-k", str(COUNT), "--map-functions", "60", code=code)
+        return self.run_timbre("align", *args, "-k", str(COUNT), "--map-functions", "50", code=code)
 
     def refuse(self, *args, code=2, words=""):
         done = self.align(*args, code=code)

@@ -159,8 +159,9 @@ std::string to_mat(const std::vector<NamedArray>& arrays) {
     append_variable(out, array);
     has_indices = has_indices || array.is_index;
   }
-  if (has_indices)
+  if (has_indices) {
     append_variable(out, {"index_base", to_npy(Eigen::VectorXi(Eigen::VectorXi::Ones(1)))});
+  }
   return out;
 }
 

@@ -138,8 +138,8 @@ void make_folder(const std::vector<Subject>& subjects, const Context& context) {
   std::error_code failure;
   fs::create_directories(context.output, failure);
   if (failure) throw Error(ErrorKind::io, context.output, "", failure.message());
+  for (const Subject& subject : subjects) require_writable(subject.output, context.force);
   for (const Subject& subject : subjects) {
-    require_writable(subject.output, context.force);
     fs::remove(subject.output, failure);
     if (failure) throw Error(ErrorKind::io, subject.output, "", failure.message());
   }

@@ -12,7 +12,7 @@ MatchSurface prepare_for_matching(const Context& context, const std::string& pat
   });
   if (surface.component_share < 0.999) {
     context.note(path + ": only the largest component, " +
-                 to_text(100.0 * surface.component_share, 1) + " % of the area, is matched");
+                 to_text(100.0 * surface.component_share, 1) + " % of the area, is used");
   }
   return surface;
 }

@@ -125,8 +125,9 @@ void run(const Arguments& args, Context& context) {
   const MatchSurface B = load_surface(context, args.target, args.count);
   const MatchResult result =
       match(A, B, {.threads = context.threads, .progress = context.progress()});
-  if (!context.output.empty())
+  if (!context.output.empty()) {
     context.write_result(context.output, map_bytes(result, context.output));
+  }
   if (args.strict && result.verdict != Verdict::clear) context.exit_code = 3;
   context.answer(to_json(args, result), to_prose(args, result, context.output));
 }

@@ -41,7 +41,6 @@ Solved solve(const Arguments& args, const Context& context) {
   for_file(args.mesh, [&] {
     solved.op = compute_operator(file.mesh, args.op);
     const int zeros = count_zeros(solved.op);
-    require_fits(context.output, file.mesh.vertices.rows(), args.count);
     Spectrum found = compute_spectrum(
         solved.op,
         {.count = args.count + zeros, .threads = context.threads, .progress = context.progress()});

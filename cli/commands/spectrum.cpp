@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <iomanip>
 #include <memory>
@@ -185,7 +186,8 @@ void run(const Arguments& args, const Context& context) {
   SpectrumOptions options = args.spectrum;
   options.threads = context.threads;
   options.progress = context.progress();
-  require_fits(context.output, op.stiffness.rows(), options.count);
+  const Eigen::Index rows = op.stiffness.rows();
+  require_fits(context.output, rows, std::min<Eigen::Index>(options.count, rows));
   const auto document_of = [&](const Spectrum& found) { return describe(args.mesh, op, found); };
   const Spectrum found = for_file(args.mesh, [&] {
     return is_streamed(context) ? stream_spectrum(context, op, options, args.stream, document_of)

@@ -6,6 +6,7 @@
 #include "timbre/analysis/core/error.h"
 #include "timbre/analysis/core/number_text.h"
 #include "timbre/cli/array_output.h"
+#include "timbre/cli/commands/map_input.h"
 #include "timbre/cli/commands/map_output.h"
 #include "timbre/cli/options.h"
 
@@ -60,12 +61,7 @@ std::string map_bytes(const std::vector<Reflection>& found, const std::string& o
 void run(const Arguments& args, const Context& context) {
   if (!context.output.empty()) (void)array_format(context.output);
   context.require_output();
-  const MeshFile file = load_mesh(context, args.mesh);
-  const MatchSurface surface = for_file(args.mesh, [&] {
-    return prepare_surface(
-        file.mesh,
-        {.eigenpairs = args.count, .threads = context.threads, .progress = context.progress()});
-  });
+  const MatchSurface surface = load_surface(context, args.mesh, args.count);
   const std::vector<Reflection> found =
       find_reflections(surface, {.threads = context.threads, .progress = context.progress()});
   if (!context.output.empty()) {

@@ -50,6 +50,8 @@ class BlockLanczos {
  public:
   /// @param factor  factorised at the shift of the next run; must outlive this
   BlockLanczos(const ShiftedFactor& factor, LanczosOptions options);
+  BlockLanczos(const BlockLanczos&) = delete;  // its bases refer to its mass
+  BlockLanczos& operator=(const BlockLanczos&) = delete;
 
   /// Runs until the goal is reached, or `most_blocks`.
   /// @param shift  that of the factor

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "timbre/analysis/spectrum/detail/aligned_array.h"
 #include "timbre/analysis/spectrum/detail/pencil.h"
 
 namespace timbre::detail {

@@ -30,10 +30,14 @@ Eigen::SparseMatrix<double> mass_matrix(int size, bool is_diagonal) {
   return M;
 }
 
-Pencil masses(int size, bool is_diagonal) {
-  const Eigen::SparseMatrix<double> M = mass_matrix(size, is_diagonal);
-  return make_pencil(M, M);
-}
+struct Masses {
+  Masses(int size, bool is_diagonal, int threads = 1)
+      : M(mass_matrix(size, is_diagonal)), pencil(make_pencil(M, M)), mass(pencil, threads) {}
+
+  Eigen::SparseMatrix<double> M;
+  Pencil pencil;
+  BlockMass mass;
+};
 
 Square random_rows(Index rows, Index width, unsigned seed) {
   std::srand(seed);
@@ -59,9 +63,8 @@ TEST_P(EveryBasis, ProductsAreThoseOfDenseMatrices) {
   const auto [set, width, is_diagonal] = GetParam();
   for (const int size : {37, 1031, 8261}) {
     SCOPED_TRACE(size);
-    const Pencil pencil = masses(size, is_diagonal);
-    const Eigen::SparseMatrix<double> M = mass_matrix(size, is_diagonal);
-    const BlockMass mass(pencil, 1);
+    const Masses masses(size, is_diagonal);
+    const auto& [M, pencil, mass] = masses;
     EXPECT_EQ(mass.is_diagonal(), is_diagonal);
     BlockBasis basis(mass, width, set, 1);
     MatrixXd V(size, Index{4} * width);
@@ -101,9 +104,8 @@ TEST_P(EveryBasis, ProductsAreThoseOfDenseMatrices) {
 
 TEST_P(EveryBasis, OrthonormalizesInTheInnerProductOfTheMass) {
   const auto [set, width, is_diagonal] = GetParam();
-  const Pencil pencil = masses(531, is_diagonal);
-  const Eigen::SparseMatrix<double> M = mass_matrix(pencil.size, is_diagonal);
-  const BlockMass mass(pencil, 1);
+  const Masses masses(531, is_diagonal);
+  const auto& [M, pencil, mass] = masses;
   const BlockBasis basis(mass, width, set, 1);
   const Square start = random_rows(pencil.size, width, 3);
   Square U = start;
@@ -119,11 +121,10 @@ TEST_P(EveryBasis, OrthonormalizesInTheInnerProductOfTheMass) {
 
 TEST_P(EveryBasis, AnswersDoNotDependOnThreads) {
   const auto [set, width, is_diagonal] = GetParam();
-  constexpr int kSize = 20011;
-  const Pencil pencil = masses(kSize, is_diagonal);
-  const auto run = [&, width = width, set = set](int threads) {
-    const BlockMass mass(pencil, threads);
-    BlockBasis basis(mass, width, set, threads);
+  static constexpr int kSize = 20011;
+  const auto run = [width = width, set = set, is_diagonal = is_diagonal](int threads) {
+    const Masses masses(kSize, is_diagonal, threads);
+    BlockBasis basis(masses.mass, width, set, threads);
     for (unsigned j = 0; j < 3; ++j) append(basis, random_rows(kSize, width, j));
     Square U = random_rows(kSize, width, 5);
     Square Z(kSize, width);
@@ -155,9 +156,8 @@ TEST(GramFactor, TellsWhatIsNearlyDependent) {
 // The small rest of a column survives, whatever the rounding of the Gram matrix.
 TEST_P(EveryBasis, OrthonormalizesNearlyDependentColumnsInSeveralPasses) {
   const auto [set, width, is_diagonal] = GetParam();
-  const Pencil pencil = masses(300, is_diagonal);
-  const Eigen::SparseMatrix<double> M = mass_matrix(pencil.size, is_diagonal);
-  const BlockMass mass(pencil, 1);
+  const Masses masses(300, is_diagonal);
+  const auto& [M, pencil, mass] = masses;
   const BlockBasis basis(mass, width, set, 1);
   Square start = random_rows(pencil.size, width, 3);
   const MatrixXd rest = random_rows(pencil.size, 1, 4);
@@ -183,9 +183,8 @@ TEST_P(EveryBasis, OrthonormalizesNearlyDependentColumnsInSeveralPasses) {
 // A column of 0, and one whose rest beside the others is below what counts.
 TEST_P(EveryBasis, LeavesOutColumnsOfNothing) {
   const auto [set, width, is_diagonal] = GetParam();
-  const Pencil pencil = masses(300, is_diagonal);
-  const Eigen::SparseMatrix<double> M = mass_matrix(pencil.size, is_diagonal);
-  const BlockMass mass(pencil, 1);
+  const Masses masses(300, is_diagonal);
+  const auto& [M, pencil, mass] = masses;
   const BlockBasis basis(mass, width, set, 1);
   Square U = random_rows(pencil.size, width, 3);
   U.col(3).setZero();
